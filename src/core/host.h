@@ -155,8 +155,11 @@ double lc_scene_emitting_area(const lc_scene *scene); /* m^2 */
 /* The first hit of a ray, or a miss (valid = 0, wo and time set). */
 void lc_intersect(const lc_scene *scene, const lc_ray *ray, lc_hit *hit);
 
-/* The ray through (x, y) of an image of width x height pixels, x to the right and y downwards from the upper left corner. */
+/* The ray through (x, y) of an image of width x height pixels, x to the right and y downwards from the upper left corner; it starts
+ * at the near clip. */
 lc_ray lc_camera_ray(const lc_camera_desc *camera, int width, int height, double x, double y);
+/* What that ray sees first: like lc_intersect, but a hit beyond the far clip is a miss. */
+void lc_camera_see(const lc_scene *scene, const lc_ray *ray, lc_hit *hit);
 
 /* ---- sampler --------------------------------------------------------------------------------------------- */
 
@@ -165,7 +168,7 @@ lc_ray lc_camera_ray(const lc_camera_desc *camera, int width, int height, double
 struct lc_sampler {
     uint64_t seed;
     uint32_t arm, pixel, sample, dimension;
-    uint32_t block[4];
+    uint32_t block[4], loaded; /* numbers of block `loaded` */
     const struct lc_trace_log *log; /* NULL: nobody listens */
 };
 
