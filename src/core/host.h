@@ -197,6 +197,15 @@ typedef struct lc_pixel {
     lc_moments c[3];  /* R G B */
 } lc_pixel;
 
+enum { LC_MAX_SHARDS = 1024 };
+
+/* Samples [first, first + count) of one stream. */
+typedef struct lc_range {
+    uint64_t seed;
+    uint32_t arm;
+    uint64_t first, count;
+} lc_range;
+
 typedef struct lc_film {
     int width, height;
     lc_pixel *pixels; /* row by row from the top */
@@ -206,22 +215,28 @@ typedef struct lc_film {
     uint32_t arm;
     uint64_t first, count;          /* sample indices [first, first + count) */
     int min_bounces, max_bounces;
-    int shard, shards;              /* shard of shards, 0 <= shard < shards; 0 of 1 is everything */
+    lc_range *more;                 /* further ranges that were merged in, NULL when none; owned by the film */
+    int more_count;
+    int shard, shards;              /* shard of shards, 0 <= shard < shards <= LC_MAX_SHARDS; 0 of 1 is everything */
+    uint64_t pasted[LC_MAX_SHARDS / 64]; /* bit i: shard i is here too; all 0 while `shard` is the only one */
     uint64_t bad;                   /* NaN, infinite or negative samples: any is fatal to a check */
     int bad_x, bad_y;               /* where the first (by pixel, then sample) was seen */
     uint64_t bad_sample;
     double bad_value[3];
 } lc_film;
 
+/* A black film without samples, shard 0 of 1; width and height in [1, LC_MAX_SIZE], else LC_BAD_INPUT. */
 lc_status lc_film_create(lc_film **out, int width, int height, lc_error *err);
 void lc_film_free(lc_film *film);
 /* Adds a block of 1..LC_BLOCK consecutive samples of one pixel; exact merging of central moments (Pebay 2008, SAND2008-6212). */
 void lc_pixel_add(lc_pixel *pixel, const double (*samples)[3], int count);
-/* Central moments of the union of two disjoint sets. */
+/* Central moments of the union of two disjoint sets; a side with n = 0 adds nothing. */
 void lc_pixel_merge(lc_pixel *into, const lc_pixel *from);
 /* Variance of the mean, m2 / (n (n - 1)); 0 for n < 2. */
 double lc_pixel_variance(const lc_pixel *pixel, int channel);
-/* Pastes shards of one render, or averages renders of different streams, weighted by n. Refuses different sizes, scenes, bounces, and overlapping sample ranges of the same stream. */
+/* Pastes shards of one render (with the last of them it is 0 of 1), or averages whole renders of different streams or ranges, weighted by n.
+ * LC_BAD_INPUT, and `into` untouched, for different sizes, scenes, estimators, bounces, a shard or a sample range that both have, a film of unknown
+ * samples (count = 0). Third moments, max and batches survive only when both have them. */
 lc_status lc_film_merge(lc_film *into, const lc_film *from, lc_error *err);
 /* Tiles of LC_TILE^2 pixels, row by row, are what threads and shards share out. Tile t belongs to shard t mod shards. */
 enum { LC_TILE = 8 };
