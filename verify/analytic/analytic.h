@@ -38,13 +38,12 @@ double lc_polygon_factor(const lc_vec3 *corners, int count, lc_vec3 p, lc_vec3 n
 
 /* F of a rectangle a x b parallel to the receiver at height h, one corner right above p; a, b in [0, INFINITY]; 0 for
  * h <= 0. F = 1/(2 pi) [X/sqrt(1+X^2) atan(Y/sqrt(1+X^2)) + Y/sqrt(1+Y^2) atan(X/sqrt(1+Y^2))], X = a/h, Y = b/h.
- * Source: Howell, A Catalog of Radiation Heat Transfer Configuration Factors, B-3 (Hamilton and Morgan, NACA TN 2836,
- * 1952). */
+ * Source: Hamilton and Morgan, Radiant-Interchange Configuration Factors, NACA TN 2836, 1952. */
 double lc_rectangle_factor(double a, double b, double h);
 
 /* F of a disk of `radius` > 0 parallel to the receiver at height h, its axis passing p at distance `offset` >= 0; 0
- * for h <= 0. F = (1 - (h^2+a^2-R^2) / sqrt((h^2+a^2+R^2)^2 - 4 a^2 R^2)) / 2. Source: Howell, B-13 (Hamilton and
- * Morgan 1952). */
+ * for h <= 0. F = (1 - (h^2+a^2-R^2) / sqrt((h^2+a^2+R^2)^2 - 4 a^2 R^2)) / 2. Source: Hamilton and
+ * Morgan 1952. */
 double lc_disk_factor(double radius, double offset, double h);
 
 /* F of the ellipse centre + x axis1 + y axis2, x^2 + y^2 <= 1, which emits on the side of axis1 x axis2; the axes are
@@ -58,13 +57,13 @@ lc_status lc_ellipse_factor(double *factor, lc_vec3 centre, lc_vec3 axis1, lc_ve
 /* F of a sphere of `radius` >= 0, receiver outside (on the sphere: its tangent plane's half-space; inside: 0, the
  * sphere emits outward). H = d/R, t the angle between n and the centre. F = cos t / H^2 for cos t >= 1/H; 0 for cos t
  * <= -1/H; between, with x = sqrt(H^2-1), y = -x cot t, s = sin t sqrt(1-y^2): F = [cos t acos y - x s]/(pi H^2) +
- * atan(s/x)/pi. Source: Howell, B-43; Chung and Sumitra, Radiation shape factors from plane point sources, J. Heat
- * Transfer 94, 1972. */
+ * atan(s/x)/pi. Source: Martinez, Radiative View Factors, Universidad Politecnica
+ * de Madrid (patch to a sphere, tilted). */
 double lc_sphere_factor(lc_vec3 centre, double radius, lc_vec3 p, lc_vec3 n);
 
 /* F of the lune between the horizon and a half-plane of directions at `elevation` b in [0, pi] [rad] above it, such
- * as an infinite wall whose top edge stands at elevation b: F = (1 - cos b) / 2. Source: Howell, B-1 (two infinite
- * lines). */
+ * as an infinite wall whose top edge stands at elevation b: F = (1 - cos b) / 2. Source: Nusselt 1928
+ * (projection on the unit disk). */
 double lc_wall_factor(double elevation);
 
 /* Irradiance [W m^-2] by a sky of constant `radiance` above a receiver whose hemisphere is free: pi L. */

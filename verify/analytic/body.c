@@ -240,7 +240,8 @@ static int ball_interval(const lc_body *body, double c, double s, double q[2])
         return 1;
     double distance = lc_length(body->v[0]);
     double out = c * body->v[0].x + s * body->v[0].y, along = hypot(out, body->v[0].z);
-    double cone2 = side > 0 ? (distance - body->radius) * (distance + body->radius) : 0; /* (d cos of the half angle)^2 */
+    /* tangent of the half angle in this plane: half / cone, the cone's tangents being sqrt(d^2 - R^2) long */
+    double cone2 = side > 0 ? (distance - body->radius) * (distance + body->radius) : 0;
     double across = c * body->v[0].y - s * body->v[0].x;
     double half2 = side > 0 ? (body->radius - across) * (body->radius + across) : along * along;
     if (!(half2 > 0 && along > 0))
@@ -266,7 +267,7 @@ int lc_body_interval(const lc_body *body, double cos_phi, double sin_phi, double
     return 1;
 }
 
-/* ---- azimuths where the ends are not smooth ------------------------------------------------------------------------ */
+/* ---- azimuths where the ends are not smooth -------------------------------------------------------------------- */
 
 /* Vertical planes through the receiver that touch the ellipse, and where it goes below the horizon. */
 static int ellipse_azimuths(const lc_body *body, double *phi)

@@ -72,7 +72,8 @@ lc_vec3 lc_polygon_area(const lc_vec3 *corners, int count);
 /* lc_polygon_factor for corners relative to the receiver that lie above its horizon, seen from the emitting side. */
 double lc_polygon_factor_above(const lc_vec3 *corners, int count, lc_vec3 n);
 
-/* F of the visible part of a polygon behind polygons: exact, by clipping. LC_FAULT when a piece has too many corners. */
+/* F of the visible part of a polygon behind polygons: exact, by clipping. LC_FAULT when a piece gets too many
+ * corners. */
 lc_status lc_clip_factor(double *factor, const lc_body *lamp, const lc_body *const *hiders, int count, lc_error *err);
 /* F of the visible part of any body behind any bodies: quadrature over the azimuth. */
 lc_status lc_scan_factor(double *factor, const lc_body *lamp, const lc_body *const *hiders, int count, lc_error *err);

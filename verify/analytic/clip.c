@@ -47,7 +47,8 @@ static void shadow_of(struct shadow *shadow, const lc_body *hider)
 static lc_status visible(double *sum, const struct piece *piece, const struct hiders *hiders, int next, lc_error *err);
 
 /* The piece minus the shadow of the next hider, minus those of the others. */
-static lc_status visible_past(double *sum, const struct piece *piece, const struct hiders *hiders, int next, lc_error *err)
+static lc_status visible_past(double *sum, const struct piece *piece, const struct hiders *hiders, int next,
+                              lc_error *err)
 {
     struct shadow shadow;
     shadow_of(&shadow, hiders->list[next]);
@@ -81,8 +82,8 @@ static lc_status visible(double *sum, const struct piece *piece, const struct hi
     }
     /* each cut of a convex polygon adds at most one corner */
     if (piece->count + LC_BODY_CORNERS + 1 > LC_POLYGON_MAX)
-        return lc_fail(err, LC_FAULT, "visible part of a lamp: a piece of %d corners, expected at most %d", piece->count,
-                       LC_POLYGON_MAX - LC_BODY_CORNERS - 1);
+        return lc_fail(err, LC_FAULT, "visible part of a lamp: a piece of %d corners, expected at most %d",
+                       piece->count, LC_POLYGON_MAX - LC_BODY_CORNERS - 1);
     return visible_past(sum, piece, hiders, next, err);
 }
 

@@ -59,7 +59,8 @@ static void cube_faces(const struct direct *direct, int index, lc_body faces[FAC
         int k = i / 2, negative = i % 2;
         lc_vec3 centre = lc_add(column(map, 3), lc_scale(negative ? -1 : 1, column(map, k)));
         int turned = negative ^ mirrors(map) ^ (shape->flip_normals != 0);
-        faces[i] = quad(direct, index, centre, column(map, (k + 1) % 3), column(map, (k + 2) % 3), whole, whole, turned);
+        lc_vec3 a = column(map, (k + 1) % 3), b = column(map, (k + 2) % 3);
+        faces[i] = quad(direct, index, centre, a, b, whole, whole, turned);
     }
 }
 
@@ -85,7 +86,7 @@ static lc_status ball_body(lc_body *out, const struct direct *direct, int index)
         int next = (k + 1) % 3;
         if (!(fabs(length[k] - length[next]) <= LC_TOUCH * length[k] &&
               fabs(lc_dot(axis[k], axis[next])) <= LC_TOUCH * length[k] * length[next]))
-            return lc_fail(direct->err, LC_BAD_INPUT, "%s:%d: sphere under a map that is no similarity, expected uniform scale",
+            return lc_fail(direct->err, LC_BAD_INPUT, "%s:%d: sphere under a map that is no similarity, expected one",
                            direct->desc->name, shape->line);
     }
     *out = lc_body_ball(&direct->receiver, column(&shape->to_world, 3), length[0], index);
@@ -98,7 +99,8 @@ static void add_body(struct direct *direct, const lc_body *body)
         direct->bodies[direct->count++] = *body;
 }
 
-/* All that can hide something. Of a cube seen from outside, the faces turned to the receiver hide what the others do. */
+/* All that can hide something. Of a cube seen from outside, the faces turned to the receiver hide what the others
+ * do. */
 static lc_status gather_bodies(struct direct *direct)
 {
     static const double whole[2] = {-1, 1};
@@ -188,7 +190,8 @@ static lc_status add_flat(struct direct *direct, const lc_body *lamp, lc_rgb rad
 
 static lc_status refuse_texture(const struct direct *direct, const lc_shape_desc *shape, const char *what)
 {
-    return lc_fail(direct->err, LC_BAD_INPUT, "%s:%d: no closed form for a checkerboard lamp on a %s, expected constant radiance",
+    return lc_fail(direct->err, LC_BAD_INPUT,
+                   "%s:%d: no closed form for a checkerboard lamp on a %s, expected constant radiance",
                    direct->desc->name, shape->line, what);
 }
 
@@ -321,7 +324,7 @@ static void add_deltas(struct direct *direct)
     }
 }
 
-/* ---- the two questions -------------------------------------------------------------------------------------------- */
+/* ---- the two questions ---------------------------------------------------------------------------------------- */
 
 static lc_status direct_sum(lc_rgb *out, const lc_scene_desc *desc, lc_vec3 p, lc_vec3 n, int with_hiders,
                             lc_error *err)
@@ -333,7 +336,10 @@ static lc_status direct_sum(lc_rgb *out, const lc_scene_desc *desc, lc_vec3 p, l
     if (with_hiders) {
         direct.bodies = malloc(room * sizeof *direct.bodies);
         direct.hiders = malloc(room * sizeof *direct.hiders);
-        status = direct.bodies && direct.hiders ? gather_bodies(&direct) : lc_fail(err, LC_FAULT, "direct light: out of memory");
+        if (!direct.bodies || !direct.hiders)
+            status = lc_fail(err, LC_FAULT, "direct light: out of memory");
+        else
+            status = gather_bodies(&direct);
         if (status)
             goto cleanup;
     }

@@ -162,7 +162,7 @@ double lc_polygon_factor_above(const lc_vec3 *c, int count, lc_vec3 n)
         near = fmin(near, lc_length(c[i]));
         size = fmax(size, lc_length(lc_sub(c[i], c[0])));
     }
-    if (size < 1e-3 * near)
+    if (size < 5e-3 * near)
         return fmax(0, small_factor(c, count, n));
     double sum = 0;
     for (int i = 0; i < count; ++i) {

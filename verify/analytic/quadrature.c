@@ -43,7 +43,7 @@ lc_status lc_quadrature(double *out, lc_integrand *f, void *user, double a, doub
     gsl_integration_workspace_free(work);
     /* GSL also reports rounding that stops it a little short of the goal: what counts is the error it is left with */
     if (status && !(error <= 100 * fmax(absolute, relative * fabs(*out))))
-        return lc_fail(err, LC_FAULT, "quadrature over [%g, %g]: %s, error %g left, expected %g", a, b, gsl_strerror(status),
-                       error, fmax(absolute, relative * fabs(*out)));
+        return lc_fail(err, LC_FAULT, "quadrature over [%g, %g]: %s, error %g left, expected %g", a, b,
+                       gsl_strerror(status), error, fmax(absolute, relative * fabs(*out)));
     return LC_OK;
 }

@@ -27,7 +27,8 @@ static int by_start(const void *a, const void *b)
 }
 
 /* The hider's interval within q, unless it lies behind the lamp there. */
-static int hidden_interval(const struct scan *scan, const lc_body *hider, double c, double s, const double q[2], double out[2])
+static int hidden_interval(const struct scan *scan, const lc_body *hider, double c, double s, const double q[2],
+                           double out[2])
 {
     if (!lc_body_interval(hider, c, s, out))
         return 0;
@@ -123,7 +124,8 @@ cleanup:
     return status;
 }
 
-lc_status lc_ellipse_factor(double *factor, lc_vec3 centre, lc_vec3 axis1, lc_vec3 axis2, lc_vec3 p, lc_vec3 n, lc_error *err)
+lc_status lc_ellipse_factor(double *factor, lc_vec3 centre, lc_vec3 axis1, lc_vec3 axis2, lc_vec3 p, lc_vec3 n,
+                           lc_error *err)
 {
     lc_receiver receiver = lc_receiver_at(p, n);
     lc_body body = lc_body_ellipse(&receiver, centre, axis1, axis2, 0);
