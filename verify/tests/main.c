@@ -5,6 +5,8 @@
 
 /* Every suite, one line each. */
 static Suite *(*const suites[])(void) = {
+    lc_suite_affine,
+    lc_suite_scene_read,
     lc_suite_status,
     lc_suite_film,
     lc_suite_analytic,

@@ -5,6 +5,8 @@
 
 #include <check.h>
 
+Suite *lc_suite_affine(void);
+Suite *lc_suite_scene_read(void);
 Suite *lc_suite_status(void);
 Suite *lc_suite_film(void);
 Suite *lc_suite_analytic(void);
