@@ -35,31 +35,44 @@ lc_status lc_cli_find_estimator(const lc_estimator **out, const char *name, lc_e
     return lc_fail(err, LC_BAD_INPUT, "unknown estimator '%s'; expected one of: %s (or a mutant: `lightcheck list mutants`)", name, list);
 }
 
+/* "NAME=VALUE" -> an override; `names` owns the name. */
+static lc_status read_definition(lc_parameter *out, char **name, const char *text, lc_error *err)
+{
+    const char *equals = strchr(text, '=');
+    if (!equals || equals == text)
+        return lc_fail(err, LC_BAD_INPUT, "-D %s: expected NAME=VALUE", text);
+    size_t length = (size_t)(equals - text);
+    *name = malloc(length + 1);
+    if (!*name)
+        return lc_fail(err, LC_FAULT, "out of memory");
+    memcpy(*name, text, length);
+    (*name)[length] = 0;
+    out->name = *name;
+    out->value = equals + 1;
+    return LC_OK;
+}
+
 lc_status lc_cli_load_scene(lc_scene **out, const char *name_or_path, const lc_strings *definitions, lc_error *err)
 {
     char path[LC_PATH_SIZE];
     lc_scene_desc desc;
     int count = definitions ? definitions->count : 0;
     lc_parameter *overrides = calloc((size_t)count + 1, sizeof *overrides);
-    lc_status status = overrides ? LC_OK : lc_fail(err, LC_FAULT, "out of memory");
-    for (int i = 0; status == LC_OK && i < count; ++i) {
-        const char *equals = strchr(definitions->items[i], '=');
-        if (!equals || equals == definitions->items[i] || (size_t)(equals - definitions->items[i]) >= sizeof overrides[i].name)
-            status = lc_fail(err, LC_BAD_INPUT, "-D %s: expected NAME=VALUE", definitions->items[i]);
-        else {
-            snprintf(overrides[i].name, sizeof overrides[i].name, "%.*s", (int)(equals - definitions->items[i]), definitions->items[i]);
-            overrides[i].value = equals + 1;
-        }
-    }
+    char **names = calloc((size_t)count + 1, sizeof *names);
+    lc_status status = overrides && names ? LC_OK : lc_fail(err, LC_FAULT, "out of memory");
+    for (int i = 0; status == LC_OK && i < count; ++i)
+        status = read_definition(&overrides[i], &names[i], definitions->items[i], err);
     if (status == LC_OK)
         status = lc_scene_locate(path, name_or_path, err);
-    if (status == LC_OK) {
+    if (status == LC_OK)
         status = lc_scene_read(&desc, path, overrides, count, err);
-        if (status == LC_OK) {
-            status = lc_scene_build(out, &desc, err);
-            lc_scene_desc_release(&desc);
-        }
+    if (status == LC_OK) {
+        status = lc_scene_build(out, &desc, err);
+        lc_scene_desc_release(&desc);
     }
+    for (int i = 0; names && i < count; ++i)
+        free(names[i]);
+    free(names);
     free(overrides);
     return status;
 }

@@ -188,6 +188,9 @@ lc_status lc_render(lc_film *film, const lc_scene *scene, const lc_estimator *es
     return LC_OK;
 }
 
+/* Where `lightcheck sample --gdb` stops: everything is set up, the estimator comes next. */
+void lc_replay_begin(void) {}
+
 lc_rgb lc_replay(lc_scene *scene, const lc_estimator *estimator, const lc_render_options *options, int width, int height, int x, int y,
                  uint64_t sample, const lc_trace_log *log)
 {
@@ -196,6 +199,7 @@ lc_rgb lc_replay(lc_scene *scene, const lc_estimator *estimator, const lc_render
     lc_sampler_start(&sampler, options->seed, options->arm, (uint32_t)(y * width + x), (uint32_t)sample);
     sampler.log = log;
     scene->log = log;
+    lc_replay_begin();
     lc_rgb radiance = one_sample(scene, estimator, &bounces, &sampler, width, height, x, y);
     scene->log = NULL;
     return radiance;

@@ -72,6 +72,8 @@ lc_rgb lc_shape_radiance(const lc_scene *scene, int shape, int part, lc_vec3 p);
 /* Texture coordinates of a point on a shape, as Mitsuba 3 has them. */
 void lc_shape_uv(const lc_scene *scene, int shape, int part, lc_vec3 p, double *u, double *v);
 
+void lc_replay_begin(void);
+
 void lc_log(const lc_trace_log *log, const char *format, ...)
 #ifdef __GNUC__
     __attribute__((format(printf, 2, 3)))

@@ -30,7 +30,7 @@ static lc_status square_mean(const view *v, double x, double y, double side, int
 {
     static const double corners[4][2] = {{0, 0}, {1, 0}, {0, 1}, {1, 1}};
     lc_rgb value;
-    int first, kind, mixed = 0;
+    int first = 0, kind, mixed = 0;
     *mean = lc_black();
     for (int j = 0; j < 3; ++j) {
         for (int i = 0; i < 3; ++i) {
