@@ -7,6 +7,7 @@
 static Suite *(*const suites[])(void) = {
     lc_suite_status,
     lc_suite_film,
+    lc_suite_outfile,
 };
 
 int main(void)

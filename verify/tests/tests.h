@@ -7,5 +7,6 @@
 
 Suite *lc_suite_status(void);
 Suite *lc_suite_film(void);
+Suite *lc_suite_outfile(void);
 
 #endif
