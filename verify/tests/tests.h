@@ -8,5 +8,7 @@
 Suite *lc_suite_status(void);
 Suite *lc_suite_film(void);
 Suite *lc_suite_outfile(void);
+Suite *lc_suite_exr(void);
+Suite *lc_suite_png(void);
 
 #endif
