@@ -83,6 +83,9 @@ static int64_t on_write(exr_const_context_t exr, void *user, const void *buffer,
     return stream->status == LC_OK ? (int64_t)size : -1;
 }
 
+/* Zeroed, because the library decodes some damaged blocks only in part: they must read alike every time. */
+static void *allocate(size_t size) { return calloc(1, size); }
+
 /* The failure of a library call: our own I/O error when that was the cause, else its message. */
 static lc_status fail_exr(struct stream *stream, lc_status status, exr_result_t result)
 {
@@ -385,6 +388,8 @@ static lc_status read_image(lc_film **out, struct stream *stream)
     struct image image;
     memset(&image, 0, sizeof image);
     init.error_handler_fn = on_error;
+    init.alloc_fn = allocate;
+    init.free_fn = free;
     init.user_data = stream;
     init.read_fn = on_read;
     init.size_fn = on_size;
@@ -395,7 +400,7 @@ static lc_status read_image(lc_film **out, struct stream *stream)
         int w = image.block_w < image.width ? image.block_w : image.width;
         int h = image.block_h < image.height ? image.block_h : image.height;
         image.plane = (size_t)w * (size_t)h;
-        image.buffer = malloc(CHANNELS * image.plane * sizeof *image.buffer);
+        image.buffer = calloc(CHANNELS * image.plane, sizeof *image.buffer);
         if (!image.buffer)
             status = lc_fail(stream->err, LC_FAULT, "%s: out of memory", stream->path);
     }
