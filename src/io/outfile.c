@@ -142,7 +142,7 @@ static int open_target(lc_outfile *file)
         errno = ENOENT;
         return -1;
     }
-    if (exists && access(file->path, W_OK) != 0) /* rename alone would replace what was write-protected */
+    if (exists && faccessat(AT_FDCWD, file->path, W_OK, AT_EACCESS) != 0) /* rename alone would replace what was write-protected */
         return -1;
     file->target = follow_links(file->path);
     if (!file->target)

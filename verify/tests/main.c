@@ -10,6 +10,9 @@ static Suite *(*const suites[])(void) = {
     lc_suite_status,
     lc_suite_film,
     lc_suite_analytic,
+    lc_suite_outfile,
+    lc_suite_exr,
+    lc_suite_png,
 };
 
 int main(void)

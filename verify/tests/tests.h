@@ -10,5 +10,8 @@ Suite *lc_suite_scene_read(void);
 Suite *lc_suite_status(void);
 Suite *lc_suite_film(void);
 Suite *lc_suite_analytic(void);
+Suite *lc_suite_outfile(void);
+Suite *lc_suite_exr(void);
+Suite *lc_suite_png(void);
 
 #endif
