@@ -6,6 +6,7 @@
 /* Every suite, one line each. */
 static Suite *(*const suites[])(void) = {
     lc_suite_status,
+    lc_suite_stats,
 };
 
 int main(void)

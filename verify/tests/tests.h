@@ -6,5 +6,6 @@
 #include <check.h>
 
 Suite *lc_suite_status(void);
+Suite *lc_suite_stats(void);
 
 #endif
