@@ -10,8 +10,8 @@
 #include "core/lightcheck.h"
 
 static const double LN2 = 0.69314718055994530942;
-static const double TINY = 1e-300;     /* keeps Lentz's quotients from 0 / 0 */
-enum { FRACTION_STEPS = 1000000 };     /* beta needs O(sqrt(a + b)) */
+static const double TINY = 1e-300; /* keeps Lentz's quotients from 0 / 0 */
+enum { FRACTION_STEPS = 1000000 }; /* beta needs O(sqrt(a + b)) */
 static const double FRACTION_ERROR = 1e-15;
 
 static int is_probability(double alpha)

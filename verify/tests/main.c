@@ -7,6 +7,7 @@
 static Suite *(*const suites[])(void) = {
     lc_suite_status,
     lc_suite_stats,
+    lc_suite_stats_estimate,
 };
 
 int main(void)

@@ -45,7 +45,7 @@ START_TEST(tails_agree_with_closed_forms)
     for (size_t i = 0; i < sizeof points / sizeof points[0]; ++i) {
         double t = points[i];
         check_close(lc_t_log_sf(t, 1), log(atan(1 / t) / LC_PI), 1e-13); /* Cauchy */
-        double r = sqrt(2 + t * t); /* 2 degrees: (1 - t / r) / 2 */
+        double r = sqrt(2 + t * t);                                      /* 2 degrees: (1 - t / r) / 2 */
         check_close(lc_t_log_sf(t, 2), isinf(r) ? -log(2) - 2 * log(t) : -log(r) - log(r + t), 1e-12);
     }
     check_close(lc_chi_square_log_sf(3000, 2), -1500, 1e-13); /* exponential */
@@ -91,7 +91,8 @@ START_TEST(tails_refuse_nonsense)
     ck_assert(isnan(lc_t_log_sf(NAN, 5)) && isnan(lc_t_log_sf(1, 0)) && isnan(lc_t_log_sf(1, NAN)));
     ck_assert(isnan(lc_t_quantile(0, 5)) && isnan(lc_t_quantile(1, 5)) && isnan(lc_t_quantile(NAN, 5)));
     ck_assert(isnan(lc_normal_quantile(0)) && isnan(lc_normal_log_sf(NAN)) && isnan(lc_f_log_sf(-1, 2, 3)));
-    ck_assert(isnan(lc_chi_square_log_sf(-1, 3)) && isnan(lc_sidak_level(2, 3)) && isnan(lc_bonferroni_combine(NAN, 3)));
+    ck_assert(isnan(lc_chi_square_log_sf(-1, 3)) && isnan(lc_sidak_level(2, 3)) &&
+              isnan(lc_bonferroni_combine(NAN, 3)));
 }
 END_TEST
 
@@ -325,7 +326,8 @@ START_TEST(variances_are_compared)
 }
 END_TEST
 
-/* ---- convergence -------------------------------------------------------------------------------------------------- */
+/* ---- convergence --------------------------------------------------------------------------------------------------
+ */
 
 START_TEST(slope_of_a_power_law)
 {
@@ -337,7 +339,8 @@ START_TEST(slope_of_a_power_law)
     ck_assert(lc_slope_fit(&fit, x, y, sigma, 4, 0.01, NULL) == LC_OK);
     check_close(fit.slope, -0.5, 1e-13);
     check_close(exp(fit.intercept), 3, 1e-13);
-    /* x at -3, -1, 1, 3 times ln 2: the sum of squares is 20 (ln 2)^2; the noise has no slope, and a chi-square of 4 of 2 degrees. */
+    /* x at -3, -1, 1, 3 times ln 2: the sum of squares is 20 (ln 2)^2; the noise has no slope, and a chi-square of 4 of
+     * 2 degrees. */
     check_close(fit.error, 0.1 / (sqrt(20) * log(2)), 1e-13);
     check_close(fit.bounds.upper - fit.slope, fit.error * lc_normal_quantile(0.005), 1e-12);
     for (int i = 0; i < 4; ++i)
