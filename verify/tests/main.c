@@ -8,6 +8,7 @@ static Suite *(*const suites[])(void) = {
     lc_suite_status,
     lc_suite_stats,
     lc_suite_stats_estimate,
+    lc_suite_stats_pyramid,
 };
 
 int main(void)

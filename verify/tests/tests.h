@@ -8,5 +8,6 @@
 Suite *lc_suite_status(void);
 Suite *lc_suite_stats(void);
 Suite *lc_suite_stats_estimate(void);
+Suite *lc_suite_stats_pyramid(void);
 
 #endif
