@@ -9,8 +9,15 @@
 
 struct lc_claim;
 
-/* Fills width x height x 3 expected means (radiance, box-filtered over each pixel), row by row. */
-typedef lc_status lc_expect_fn(double *rgb, const struct lc_claim *claim, const lc_scene *scene, int width, int height, lc_error *err);
+/* What is expected of each pixel, box-filtered, row by row. */
+typedef struct lc_expected {
+    int width, height;
+    double *rgb;         /* 3 a pixel: mean radiance [W sr^-1 m^-2] */
+    unsigned char *skip; /* 1: a silhouette or an edge of a checkerboard runs through the pixel, whose mean has no closed form: left out */
+} lc_expected;
+
+/* Fills rgb and skip, which are there already and zero. */
+typedef lc_status lc_expect_fn(lc_expected *out, const struct lc_claim *claim, const lc_scene *scene, int threads, lc_error *err);
 
 /* "Over this scene, the mean of this estimator is ...": */
 typedef struct lc_claim {
@@ -21,6 +28,7 @@ typedef struct lc_claim {
     const lc_estimator *other; /* ... that of this one, or where NULL */
     lc_expect_fn *expect;      /* ... these values */
     int exact;                 /* 1: sample by sample, no statistics; `other` then draws the same numbers */
+    int may_be_still;          /* declared: an estimator may have no variance here, and is then held to the values exactly */
     double tolerance;          /* error of the expected values, relative to their mean; a difference below it is none */
     const char *source;        /* of what is expected, in words */
 } lc_claim;
@@ -48,9 +56,9 @@ unsigned lc_language(const lc_scene *scene, const lc_estimator *estimator);
 /* 1 when the estimator follows every lobe and reaches every emitter that occurs. */
 int lc_sees_everything(const lc_scene *scene, const lc_estimator *estimator);
 
-/* The mean of a function over a pixel, by Gauss-Legendre nodes, the pixel cut in four (down to 1/64) where `kind` differs inside it.
- * `value` gives the radiance seen along the camera ray through (x, y), and a number that changes across discontinuities. */
+/* Radiance seen at a hit, and a number that changes where the radiance jumps. With value = NULL only the kind is asked for. Any thread. */
 typedef lc_status lc_view_fn(lc_rgb *value, int *kind, const lc_scene *scene, const lc_hit *hit, void *user, lc_error *err);
-lc_status lc_expect_view(double *rgb, lc_view_fn *view, void *user, const lc_scene *scene, int width, int height, lc_error *err);
+/* The mean of a view over each pixel by 3 x 3 Gauss-Legendre nodes; pixels of more than one kind are skipped. threads 0: one a core. */
+lc_status lc_expect_view(lc_expected *out, lc_view_fn *view, void *user, const lc_scene *scene, int threads, lc_error *err);
 
 #endif

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  *
- * The mean of a function over each pixel: what a box filter makes of it.
+ * The mean of a function over each pixel: what a box filter makes of it. Rows of pixels are shared out among threads.
  */
-#include <string.h>
+#include <pthread.h>
+#include <unistd.h>
 
 #include "verify/checks/checks.h"
 
@@ -10,73 +11,101 @@ typedef struct view {
     lc_view_fn *function;
     void *user;
     const lc_scene *scene;
-    int width, height;
+    lc_expected *out;
+    pthread_mutex_t lock; /* of what follows */
+    int next_row;
+    lc_status status;
+    lc_error err;
 } view;
 
 static lc_status look(const view *v, double x, double y, lc_rgb *value, int *kind, lc_error *err)
 {
-    lc_ray ray = lc_camera_ray(&lc_scene_description(v->scene)->camera, v->width, v->height, x, y);
+    lc_ray ray = lc_camera_ray(&lc_scene_description(v->scene)->camera, v->out->width, v->out->height, x, y);
     lc_hit hit;
     lc_camera_see(v->scene, &ray, &hit);
     return v->function(value, kind, v->scene, &hit, v->user, err);
 }
 
-/* Three-point Gauss-Legendre nodes on [0, 1] and their weights: exact to degree 5. */
-static const double nodes[3] = {0.11270166537925831148, 0.5, 0.88729833462074168852};
-static const double weights[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
-
-/* Mean over the square of this side; `depth` more cuts where it is not of one kind. */
-static lc_status square_mean(const view *v, double x, double y, double side, int depth, lc_rgb *mean, lc_error *err)
+/* Whether the pixel's border, eight points a side, is of one kind. */
+static lc_status border_is_mixed(const view *v, int x, int y, int kind, int *mixed, lc_error *err)
 {
-    static const double corners[4][2] = {{0, 0}, {1, 0}, {0, 1}, {1, 1}};
-    lc_rgb value;
-    int first = 0, kind, mixed = 0;
-    *mean = lc_black();
-    for (int j = 0; j < 3; ++j) {
-        for (int i = 0; i < 3; ++i) {
-            lc_status status = look(v, x + side * nodes[i], y + side * nodes[j], &value, &kind, err);
-            if (status != LC_OK)
-                return status;
-            if (i == 0 && j == 0)
-                first = kind;
-            mixed |= kind != first;
-            *mean = lc_rgb_add(*mean, lc_rgb_scale(weights[i] * weights[j], value));
+    *mixed = 0;
+    for (int i = 0; i < 32 && !*mixed; ++i) {
+        double t = (i % 8) / 8.0, dx = 0, dy = 0;
+        int here;
+        switch (i / 8) {
+        case 0: dx = t; break;
+        case 1: dx = 1, dy = t; break;
+        case 2: dx = 1 - t, dy = 1; break;
+        default: dy = 1 - t;
         }
-    }
-    for (int i = 0; i < 4 && !mixed && depth > 0; ++i) {
-        lc_status status = look(v, x + side * corners[i][0], y + side * corners[i][1], &value, &kind, err);
+        lc_status status = look(v, x + dx, y + dy, NULL, &here, err);
         if (status != LC_OK)
             return status;
-        mixed |= kind != first;
-    }
-    if (!mixed || depth == 0)
-        return LC_OK;
-    *mean = lc_black();
-    for (int i = 0; i < 4; ++i) {
-        lc_rgb quarter;
-        lc_status status =
-            square_mean(v, x + 0.5 * side * corners[i][0], y + 0.5 * side * corners[i][1], 0.5 * side, depth - 1, &quarter, err);
-        if (status != LC_OK)
-            return status;
-        *mean = lc_rgb_add(*mean, lc_rgb_scale(0.25, quarter));
+        *mixed = here != kind;
     }
     return LC_OK;
 }
 
-lc_status lc_expect_view(double *rgb, lc_view_fn *function, void *user, const lc_scene *scene, int width, int height, lc_error *err)
+static lc_status pixel_mean(const view *v, int x, int y, lc_error *err)
 {
-    view v = {function, user, scene, width, height};
-    for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) {
-            lc_rgb mean;
-            lc_status status = square_mean(&v, x, y, 1.0, 6, &mean, err);
-            if (status != LC_OK)
-                return status;
-            double *pixel = rgb + 3 * ((size_t)y * (size_t)width + (size_t)x);
-            pixel[0] = mean.r;
-            pixel[1] = mean.g;
-            pixel[2] = mean.b;
-        }
+    /* Three-point Gauss-Legendre nodes on [0, 1] and their weights: exact to degree 5. */
+    static const double nodes[3] = {0.11270166537925831148, 0.5, 0.88729833462074168852};
+    static const double weights[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
+    size_t index = (size_t)y * (size_t)v->out->width + (size_t)x;
+    int kind, here, mixed;
+    lc_rgb mean = lc_black(), value;
+    lc_status status = look(v, x + 0.5, y + 0.5, NULL, &kind, err);
+    if (status == LC_OK)
+        status = border_is_mixed(v, x, y, kind, &mixed, err);
+    for (int i = 0; i < 9 && status == LC_OK && !mixed; ++i) {
+        status = look(v, x + nodes[i % 3], y + nodes[i / 3], &value, &here, err);
+        mixed = here != kind;
+        mean = lc_rgb_add(mean, lc_rgb_scale(weights[i % 3] * weights[i / 3], value));
     }
+    if (status != LC_OK)
+        return status;
+    v->out->skip[index] = (unsigned char)mixed;
+    v->out->rgb[3 * index] = mixed ? 0 : mean.r;
+    v->out->rgb[3 * index + 1] = mixed ? 0 : mean.g;
+    v->out->rgb[3 * index + 2] = mixed ? 0 : mean.b;
     return LC_OK;
+}
+
+static void *work(void *argument)
+{
+    view *v = argument;
+    lc_error err = {""};
+    for (;;) {
+        pthread_mutex_lock(&v->lock);
+        int y = v->status == LC_OK ? v->next_row++ : v->out->height;
+        pthread_mutex_unlock(&v->lock);
+        if (y >= v->out->height)
+            return NULL;
+        lc_status status = LC_OK;
+        for (int x = 0; x < v->out->width && status == LC_OK; ++x)
+            status = pixel_mean(v, x, y, &err);
+        if (status == LC_OK)
+            continue;
+        pthread_mutex_lock(&v->lock);
+        v->status = status;
+        v->err = err;
+        pthread_mutex_unlock(&v->lock);
+    }
+}
+
+lc_status lc_expect_view(lc_expected *out, lc_view_fn *function, void *user, const lc_scene *scene, int threads, lc_error *err)
+{
+    view v = {function, user, scene, out, PTHREAD_MUTEX_INITIALIZER, 0, LC_OK, {""}};
+    pthread_t thread[64];
+    long wanted = threads > 0 ? threads : sysconf(_SC_NPROCESSORS_ONLN);
+    int started = 0;
+    while (started < 63 && started < wanted - 1 && pthread_create(&thread[started], NULL, work, &v) == 0)
+        ++started;
+    work(&v);
+    for (int i = 0; i < started; ++i)
+        pthread_join(thread[i], NULL);
+    if (v.status != LC_OK && err)
+        *err = v.err;
+    return v.status;
 }

@@ -74,20 +74,47 @@ static double hardness(const lc_pyramid *p, double scale)
     return step + (p->verdict == LC_FAIL && p->worst.level >= 0 ? fmin(-p->worst.log_p, 1e8) : fmin(deviation, 1e8));
 }
 
-static double mean_of(const lc_film *film, const double *values, size_t count, int channel)
+/* Mean over the pixels that are not skipped, of the film or of the expected values. */
+static double mean_of(const lc_film *film, const lc_expected *expected, const unsigned char *skip, int channel)
 {
+    size_t count = film ? (size_t)film->width * (size_t)film->height : (size_t)expected->width * (size_t)expected->height, used = 0;
     double sum = 0;
-    for (size_t i = 0; i < count; ++i)
-        sum += values ? values[3 * i + (size_t)channel] : film->pixels[i].c[channel].mean;
-    return sum / (double)count;
+    for (size_t i = 0; i < count; ++i) {
+        if (skip && skip[i])
+            continue;
+        sum += film ? film->pixels[i].c[channel].mean : expected->rgb[3 * i + (size_t)channel];
+        ++used;
+    }
+    return used ? sum / (double)used : 0;
 }
 
 /* ---- exact claims ----------------------------------------------------------------------------------------------- */
 
+/* Pixel by pixel, against the other film's or the expected values. */
+static void compare_exactly(lc_row *row, const lc_film *film, const lc_film *other, const lc_expected *expected, double tolerance)
+{
+    size_t count = (size_t)film->width * (size_t)film->height;
+    row->verdict = LC_ROW_PASS;
+    for (size_t i = 0; i < count; ++i) {
+        for (int c = 0; c < 3; ++c) {
+            if (expected && expected->skip[i])
+                continue;
+            double is = film->pixels[i].c[c].mean, should = other ? other->pixels[i].c[c].mean : expected->rgb[3 * i + (size_t)c];
+            if (lc_decide_exact(is - should, tolerance * fabs(should)) == LC_PASS)
+                continue;
+            row->verdict = LC_ROW_FAIL;
+            snprintf(row->reason, sizeof row->reason, "%s on %s is wrong: pixel %d,%d has %s = %.9g, expected exactly %.9g (%+.3g%%)", row->estimator,
+                     row->scene, (int)(i % (size_t)film->width), (int)(i / (size_t)film->width), channel_names[c], is, should,
+                     100 * (is / should - 1));
+            return;
+        }
+    }
+}
+
 static lc_status judge_exact(lc_row *row, lc_session *session, const lc_claim *claim, lc_error *err)
 {
     const lc_film *film, *other = NULL;
-    const double *values = NULL;
+    const lc_expected *expected = NULL;
     uint32_t arm = lc_session_arm(claim->estimator);
     row->samples = LC_BLOCK;
     lc_status status =
@@ -95,28 +122,27 @@ static lc_status judge_exact(lc_row *row, lc_session *session, const lc_claim *c
     if (status == LC_OK)
         status = claim->other ? lc_session_film(&other, session, claim->scene, claim->other, claim->min_bounces, claim->max_bounces, arm,
                                                 row->samples, err)
-                              : lc_session_values(&values, session, claim, err);
+                              : lc_session_values(&expected, session, claim, err);
     if (status != LC_OK)
         return status;
-    if (film->bad) {
+    row->paths = row->samples * (uint64_t)film->width * (uint64_t)film->height;
+    if (film->bad)
         describe_bad(row, film, session->options->seed);
-        return LC_OK;
-    }
-    size_t count = (size_t)film->width * (size_t)film->height;
-    row->paths = row->samples * count;
-    row->verdict = LC_ROW_PASS;
-    for (size_t i = 0; i < count && row->verdict == LC_ROW_PASS; ++i) {
-        for (int c = 0; c < 3; ++c) {
-            double is = film->pixels[i].c[c].mean, expected = other ? other->pixels[i].c[c].mean : values[3 * i + (size_t)c];
-            if (lc_decide_exact(is - expected, claim->tolerance * fabs(expected)) == LC_PASS)
-                continue;
-            row->verdict = LC_ROW_FAIL;
-            snprintf(row->reason, sizeof row->reason, "%s on %s: pixel %d,%d has %s = %.9g, expected exactly %.9g", row->estimator, row->scene,
-                     (int)(i % (size_t)film->width), (int)(i / (size_t)film->width), channel_names[c], is, expected);
-            break;
-        }
-    }
+    else
+        compare_exactly(row, film, other, expected, claim->tolerance);
     return LC_OK;
+}
+
+/* 1 when no pixel shows any variance beyond rounding. */
+static int is_still(const lc_film *film)
+{
+    for (size_t i = 0; i < (size_t)film->width * (size_t)film->height; ++i)
+        for (int c = 0; c < 3; ++c) {
+            const lc_moments *m = &film->pixels[i].c[c];
+            if (m->m2 > 1e-24 * m->mean * m->mean * (double)film->pixels[i].n)
+                return 0;
+        }
+    return 1;
 }
 
 /* ---- statistical claims -------------------------------------------------------------------------------------------- */
@@ -142,20 +168,23 @@ typedef struct look_result {
     double scale;
 } look_result;
 
-static lc_status judge_look(look_result *out, const lc_film *film, const lc_film *other, const double *values, lc_estimate *field,
+static lc_status judge_look(look_result *out, const lc_film *film, const lc_film *other, const lc_expected *expected, lc_estimate *field,
                             lc_pyramid_plan *plan, double margin, double tolerance, lc_error *err)
 {
-    size_t count = (size_t)film->width * (size_t)film->height;
+    const unsigned char *skip = expected ? expected->skip : NULL;
     double most = -1;
     out->verdict = LC_PASS;
     for (int c = 0; c < 3; ++c) {
         lc_pyramid pyramid;
-        double scale = mean_of(other, values, count, c);
+        double scale = mean_of(other, expected, skip, c);
         /* Where nothing is expected, any light at all is wrong by infinitely many percent: the margin is then of what was seen. */
-        double unit = scale > 0 ? scale : mean_of(film, NULL, count, c);
+        double unit = scale > 0 ? scale : mean_of(film, NULL, skip, c);
         plan->margin[lc_pyramid_levels(film->width, film->height) - 1] = unit > 0 ? margin * unit : INFINITY;
         lc_status status = other ? lc_field_two(field, film, other, c, tolerance * scale, err)
-                                 : lc_field_one(field, film, values, c, tolerance * scale, err);
+                                 : lc_field_one(field, film, expected->rgb, c, tolerance * scale, err);
+        for (size_t i = 0; skip && i < (size_t)film->width * (size_t)film->height; ++i)
+            if (skip[i])
+                field[i] = lc_estimate_zero();
         if (status == LC_OK)
             status = lc_pyramid_judge(&pyramid, field, film->width, film->height, plan, err);
         if (status != LC_OK)
@@ -192,9 +221,9 @@ static lc_status judge_statistically(lc_row *row, lc_session *session, const lc_
     lc_pyramid_plan plan;
     lc_pyramid_plan_init(&plan, lc_budget_row_fail(&budget), lc_budget_row_pass(&budget));
 
-    const double *values = NULL;
+    const lc_expected *expected = NULL;
     if (!claim->other)
-        status = lc_session_values(&values, session, claim, err);
+        status = lc_session_values(&expected, session, claim, err);
     look_result result = {.verdict = LC_GO_ON};
     for (int k = 0; status == LC_OK && k < looks.count && result.verdict == LC_GO_ON; ++k) {
         const lc_film *film, *other = NULL;
@@ -211,7 +240,12 @@ static lc_status judge_statistically(lc_row *row, lc_session *session, const lc_
             describe_bad(row, film->bad ? film : other, session->options->seed);
             return LC_OK;
         }
-        status = judge_look(&result, film, other, values, field, &plan, row->margin, claim->tolerance, err);
+        if (claim->may_be_still && expected && is_still(film)) {
+            row->exact = 1;
+            compare_exactly(row, film, NULL, expected, fmax(claim->tolerance, 1e-9));
+            return LC_OK;
+        }
+        status = judge_look(&result, film, other, expected, field, &plan, row->margin, claim->tolerance, err);
     }
     if (status != LC_OK)
         return status;

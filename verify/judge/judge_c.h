@@ -21,7 +21,7 @@ typedef struct lc_stock_film {
 typedef struct lc_stock_values {
     const lc_scene *scene;
     lc_expect_fn *expect;
-    double *rgb;
+    lc_expected expected;
 } lc_stock_values;
 
 typedef struct lc_session {
@@ -39,8 +39,8 @@ enum { LC_MOST_LOOKS = 5 };
 /* The film of that stream with exactly `samples` a pixel. The film is the session's. */
 lc_status lc_session_film(const lc_film **out, lc_session *session, const lc_scene *scene, const lc_estimator *estimator, int min_bounces, int max_bounces,
                           uint32_t arm, uint64_t samples, lc_error *err);
-/* The expected values of the claim, width x height x 3. The array is the session's. */
-lc_status lc_session_values(const double **out, lc_session *session, const lc_claim *claim, lc_error *err);
+/* The expected values of the claim. They are the session's. */
+lc_status lc_session_values(const lc_expected **out, lc_session *session, const lc_claim *claim, lc_error *err);
 /* Drops all films and values: the next scene needs none of them. */
 void lc_session_clear(lc_session *session);
 

@@ -77,30 +77,35 @@ lc_status lc_session_film(const lc_film **out, lc_session *session, const lc_sce
     return lc_render(key.film, scene, estimator, &options, err);
 }
 
-lc_status lc_session_values(const double **out, lc_session *session, const lc_claim *claim, lc_error *err)
+static void release_expected(lc_expected *expected)
+{
+    free(expected->rgb);
+    free(expected->skip);
+}
+
+lc_status lc_session_values(const lc_expected **out, lc_session *session, const lc_claim *claim, lc_error *err)
 {
     for (int i = 0; i < session->value_count; ++i) {
         if (session->values[i].scene == claim->scene && session->values[i].expect == claim->expect) {
-            *out = session->values[i].rgb;
+            *out = &session->values[i].expected;
             return LC_OK;
         }
     }
     const lc_scene_desc *desc = lc_scene_description(claim->scene);
+    size_t pixels = (size_t)desc->width * (size_t)desc->height;
     lc_stock_values *values = realloc(session->values, ((size_t)session->value_count + 1) * sizeof *values);
-    if (values)
-        session->values = values;
-    double *rgb = malloc(3 * sizeof *rgb * (size_t)desc->width * (size_t)desc->height);
-    if (!values || !rgb) {
-        free(rgb);
+    if (!values)
         return lc_fail(err, LC_FAULT, "out of memory for expected values");
-    }
-    lc_status status = claim->expect(rgb, claim, claim->scene, desc->width, desc->height, err);
+    session->values = values;
+    lc_expected expected = {desc->width, desc->height, calloc(3 * pixels, sizeof(double)), calloc(pixels, 1)};
+    lc_status status = expected.rgb && expected.skip ? claim->expect(&expected, claim, claim->scene, session->options->threads, err)
+                                                     : lc_fail(err, LC_FAULT, "out of memory for expected values");
     if (status != LC_OK) {
-        free(rgb);
+        release_expected(&expected);
         return status;
     }
-    values[session->value_count++] = (lc_stock_values){claim->scene, claim->expect, rgb};
-    *out = rgb;
+    values[session->value_count] = (lc_stock_values){claim->scene, claim->expect, expected};
+    *out = &values[session->value_count++].expected;
     return LC_OK;
 }
 
@@ -109,7 +114,7 @@ void lc_session_clear(lc_session *session)
     for (int i = 0; i < session->film_count; ++i)
         lc_film_free(session->films[i].film);
     for (int i = 0; i < session->value_count; ++i)
-        free(session->values[i].rgb);
+        release_expected(&session->values[i].expected);
     free(session->films);
     free(session->values);
     session->films = NULL;

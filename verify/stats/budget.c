@@ -8,7 +8,8 @@
 
 static int budget_is_valid(const lc_budget *b)
 {
-    return b->rows >= 1 && b->channels >= 1 && b->looks >= 1 && b->fail > 0 && b->fail < 1 && b->pass > 0 && b->pass < 1;
+    return b->rows >= 1 && b->channels >= 1 && b->looks >= 1 && b->fail > 0 && b->fail < 1 && b->pass > 0 &&
+           b->pass < 1;
 }
 
 double lc_budget_row_fail(const lc_budget *b)
@@ -44,8 +45,9 @@ int lc_budget_text(char *text, size_t size, const lc_budget *b, int width, int h
     for (int l = 0; l < levels; ++l) {
         int side = 1 << l;
         double tiles = (double)((width - 1) / side + 1) * ((height - 1) / side + 1), alpha = fail / levels / tiles;
-        length += snprintf(rest(text, size, length), rest_size(size, length), "  %5d x %-5d %9.0f tiles x %.3g, two-sided z %.2f\n", side,
-                           side, tiles, alpha, lc_normal_quantile(0.5 * alpha));
+        length += snprintf(rest(text, size, length), rest_size(size, length),
+                           "  %5d x %-5d %9.0f tiles x %.3g, two-sided z %.2f\n", side, side, tiles, alpha,
+                           lc_normal_quantile(0.5 * alpha));
     }
     return length;
 }

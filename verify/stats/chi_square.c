@@ -46,8 +46,8 @@ static void pool(lc_chi_square *out, const bin *sorted, size_t bins, double leas
     out->statistic += cell_term(&last);
 }
 
-lc_status lc_chi_square_test(lc_chi_square *out, const double *observed, const double *expected, size_t bins, double least, int fitted,
-                             lc_error *err)
+lc_status lc_chi_square_test(lc_chi_square *out, const double *observed, const double *expected, size_t bins,
+                             double least, int fitted, lc_error *err)
 {
     lc_status status = LC_OK;
     lc_chi_square result = {0, 0, NAN, 0, 0};
@@ -60,7 +60,8 @@ lc_status lc_chi_square_test(lc_chi_square *out, const double *observed, const d
     }
     for (size_t i = 0; i < bins; ++i) {
         if (!(observed[i] >= 0 && observed[i] < INFINITY && expected[i] >= 0 && expected[i] < INFINITY)) {
-            status = lc_fail(err, LC_BAD_INPUT, "bin %zu: %g observed, %g expected, expected finite counts >= 0", i, observed[i], expected[i]);
+            status = lc_fail(err, LC_BAD_INPUT, "bin %zu: %g observed, %g expected, expected finite counts >= 0", i,
+                             observed[i], expected[i]);
             goto cleanup;
         }
         sorted[i].observed = observed[i];
@@ -73,7 +74,8 @@ lc_status lc_chi_square_test(lc_chi_square *out, const double *observed, const d
     pool(&result, sorted, bins, least);
     result.df = (double)result.cells - 1 - fitted;
     if (result.df < 1) {
-        status = lc_fail(err, LC_BAD_INPUT, "%zu cells expect at least %g, expected %d or more", result.cells, least, fitted + 2);
+        status = lc_fail(err, LC_BAD_INPUT, "%zu cells expect at least %g, expected %d or more", result.cells, least,
+                         fitted + 2);
         goto cleanup;
     }
     result.log_p = lc_chi_square_log_sf(result.statistic, result.df);

@@ -71,7 +71,8 @@ static lc_arm_sums arm_of_pixel(const lc_pixel *pixel, int has_third, int channe
     return arm;
 }
 
-lc_estimate lc_estimate_two(const lc_pixel *a, int a_has_third, const lc_pixel *b, int b_has_third, int channel, double tolerance)
+lc_estimate lc_estimate_two(const lc_pixel *a, int a_has_third, const lc_pixel *b, int b_has_third, int channel,
+                            double tolerance)
 {
     lc_estimate e = lc_estimate_zero();
     e.difference = a->c[channel].mean - b->c[channel].mean;
@@ -102,13 +103,16 @@ static lc_status check_film(const lc_film *film, int channel, double tolerance, 
         return lc_fail(err, LC_BAD_INPUT, "tolerance %g, expected a number >= 0", tolerance);
     if (film->bad)
         return lc_fail(err, LC_WRONG,
-                       "%s, %s: %llu bad samples, the first at pixel (%d, %d), sample %llu: (%g, %g, %g), expected finite values >= 0",
+                       "%s, %s: %llu bad samples, the first at pixel (%d, %d), sample %llu: (%g, %g, %g), expected "
+                       "finite values >= 0",
                        film->scene, film->estimator, (unsigned long long)film->bad, film->bad_x, film->bad_y,
-                       (unsigned long long)film->bad_sample, film->bad_value[0], film->bad_value[1], film->bad_value[2]);
+                       (unsigned long long)film->bad_sample, film->bad_value[0], film->bad_value[1],
+                       film->bad_value[2]);
     return LC_OK;
 }
 
-lc_status lc_field_two(lc_estimate *field, const lc_film *a, const lc_film *b, int channel, double tolerance, lc_error *err)
+lc_status lc_field_two(lc_estimate *field, const lc_film *a, const lc_film *b, int channel, double tolerance,
+                       lc_error *err)
 {
     lc_status status = check_film(a, channel, tolerance, err);
     if (!status)
@@ -116,18 +120,19 @@ lc_status lc_field_two(lc_estimate *field, const lc_film *a, const lc_film *b, i
     if (status)
         return status;
     if (a->width != b->width || a->height != b->height)
-        return lc_fail(err, LC_BAD_INPUT, "films of %dx%d and %dx%d pixels, expected the same size", a->width, a->height, b->width,
-                       b->height);
+        return lc_fail(err, LC_BAD_INPUT, "films of %dx%d and %dx%d pixels, expected the same size", a->width,
+                       a->height, b->width, b->height);
     if (a->seed == b->seed && a->arm == b->arm && a->first < b->first + b->count && b->first < a->first + a->count)
-        return lc_fail(err, LC_BAD_INPUT, "%s: both films are of seed %llu, arm %u, expected independent streams", a->scene,
-                       (unsigned long long)a->seed, (unsigned)a->arm);
+        return lc_fail(err, LC_BAD_INPUT, "%s: both films are of seed %llu, arm %u, expected independent streams",
+                       a->scene, (unsigned long long)a->seed, (unsigned)a->arm);
     size_t count = (size_t)a->width * (size_t)a->height;
     for (size_t i = 0; i < count; ++i)
         field[i] = lc_estimate_two(&a->pixels[i], a->has_third, &b->pixels[i], b->has_third, channel, tolerance);
     return LC_OK;
 }
 
-lc_status lc_field_one(lc_estimate *field, const lc_film *a, const double *expected, int channel, double tolerance, lc_error *err)
+lc_status lc_field_one(lc_estimate *field, const lc_film *a, const double *expected, int channel, double tolerance,
+                       lc_error *err)
 {
     lc_status status = check_film(a, channel, tolerance, err);
     if (status)
@@ -164,10 +169,15 @@ lc_student lc_estimate_student(const lc_estimate *e)
     return s;
 }
 
-int lc_student_trusted(const lc_student *s, int side, double alpha)
+double lc_skew_weight(double alpha)
 {
     double z = lc_normal_quantile(alpha);
-    return s->testable && z > 0 && s->skew[side] * z * z * z <= LC_SKEW_LIMIT;
+    return z > 0 ? (2 * z * z + 1) * exp(-0.5 * z * z) / (2 * sqrt(2 * LC_PI) * alpha) : NAN;
+}
+
+int lc_student_trusted(const lc_student *s, int side, double alpha)
+{
+    return s->testable && s->skew[side] * lc_skew_weight(alpha) <= LC_SKEW_LIMIT;
 }
 
 /* ln of the factor by which the nominal tail at z(alpha) may be too small; NaN when it is not trusted. */
@@ -175,8 +185,7 @@ static double log_correction(const lc_student *s, int side, double alpha)
 {
     if (!lc_student_trusted(s, side, alpha))
         return NAN;
-    double z = lc_normal_quantile(alpha);
-    return s->skew[side] * z * z * z / 3 + log(LC_RESERVE);
+    return s->skew[side] * lc_skew_weight(alpha) / 3 + log(LC_RESERVE);
 }
 
 double lc_student_log_p(const lc_student *s, int side, double bound, double alpha)
@@ -204,7 +213,8 @@ lc_interval lc_student_interval(const lc_student *s, double alpha)
 lc_verdict lc_student_decide(const lc_student *s, double alpha_fail, double alpha_pass, double margin)
 {
     double fail = 0.5 * alpha_fail;
-    if (lc_student_log_p(s, LC_HIGH, s->tolerance, fail) <= log(fail) || lc_student_log_p(s, LC_LOW, -s->tolerance, fail) <= log(fail))
+    if (lc_student_log_p(s, LC_HIGH, s->tolerance, fail) <= log(fail) ||
+        lc_student_log_p(s, LC_LOW, -s->tolerance, fail) <= log(fail))
         return LC_FAIL;
     if (margin > 0 && margin < INFINITY && lc_student_log_p(s, LC_LOW, margin, alpha_pass) <= log(alpha_pass) &&
         lc_student_log_p(s, LC_HIGH, -margin, alpha_pass) <= log(alpha_pass))

@@ -9,13 +9,13 @@
 
 /* What the visit knows of a level; quantities that a tile is compared with before anything costly is computed. */
 typedef struct level_state {
-    double log_tests;      /* ln(2 sides x tiles x levels) */
-    double z_cubed;        /* of the one-sided FAIL test of a tile */
-    double pooled[2];      /* skewness of an average tile */
-    double screen;         /* a tile with t <= screen cannot beat the worst one so far */
-    int screen_age;        /* the number of worst tiles when `screen` was computed */
+    double log_tests;       /* ln(2 sides x tiles x levels) */
+    double weight;          /* lc_skew_weight() of the one-sided FAIL test of a tile */
+    double pooled[2];       /* skewness of an average tile */
+    double screen;          /* a tile with t <= screen cannot beat the worst one so far */
+    int screen_age;         /* the number of worst tiles when `screen` was computed */
     double pass_df, pass_t; /* with df >= pass_df, t >= pass_t passes surely */
-    int blocked;           /* a tile was not shown to be within the margin */
+    int blocked;            /* a tile was not shown to be within the margin */
     lc_tile blocking;
 } level_state;
 
@@ -24,7 +24,7 @@ typedef struct visit_state {
     int width, height;
     const lc_pyramid_plan *plan;
     lc_pyramid *out;
-    double pass_z, pass_z_cubed;
+    double pass_z, pass_weight;
     int worst_count;
     level_state level[LC_LEVELS];
 } visit_state;
@@ -62,9 +62,10 @@ static lc_tile no_tile(void)
 static int is_sound(const lc_estimate *e)
 {
     const lc_arm_sums *a = &e->arm[0], *b = &e->arm[1];
-    double sum = fabs(e->difference) + fabs(e->expected) + e->tolerance + fabs(a->third) + fabs(b->third) + a->doubt + b->doubt +
-                 a->variance + b->variance + a->variance2 + b->variance2;
-    return sum < INFINITY && e->tolerance >= 0 && a->variance >= 0 && b->variance >= 0 && a->variance2 >= 0 && b->variance2 >= 0;
+    double sum = fabs(e->difference) + fabs(e->expected) + e->tolerance + fabs(a->third) + fabs(b->third) + a->doubt +
+                 b->doubt + a->variance + b->variance + a->variance2 + b->variance2;
+    return sum < INFINITY && e->tolerance >= 0 && a->variance >= 0 && b->variance >= 0 && a->variance2 >= 0 &&
+           b->variance2 >= 0;
 }
 
 static lc_status check_plan(const lc_pyramid_plan *plan, int levels, lc_error *err)
@@ -72,15 +73,16 @@ static lc_status check_plan(const lc_pyramid_plan *plan, int levels, lc_error *e
     if (levels == 0)
         return lc_fail(err, LC_BAD_INPUT, "size of a field, expected 1..%d", (int)LC_MAX_SIZE);
     if (!(plan->alpha_fail > 0 && plan->alpha_fail < 1 && plan->alpha_pass > 0 && plan->alpha_pass < 0.5))
-        return lc_fail(err, LC_BAD_INPUT, "error budget %g, %g, expected probabilities above 0 and below 1, 0.5", plan->alpha_fail,
-                       plan->alpha_pass);
+        return lc_fail(err, LC_BAD_INPUT, "error budget %g, %g, expected probabilities above 0 and below 1, 0.5",
+                       plan->alpha_fail, plan->alpha_pass);
     for (int l = 0; l < levels; ++l)
         if (!(plan->margin[l] > 0))
             return lc_fail(err, LC_BAD_INPUT, "margin %g of level %d, expected a number above 0", plan->margin[l], l);
     return LC_OK;
 }
 
-/* A z such that P(Z >= z) >= exp(log_p): from ln P >= -z^2 / 2 - ln(sqrt(2 pi) (z + 1 / z)) where the quantile underflows. */
+/* A z such that P(Z >= z) >= exp(log_p): from ln P >= -z^2 / 2 - ln(sqrt(2 pi) (z + 1 / z)) where the quantile
+ * underflows. */
 static double z_below(double log_p)
 {
     if (log_p >= log(0.5))
@@ -145,7 +147,7 @@ static int is_within(visit_state *state, int level, const lc_student *s)
     level_state *known = &state->level[level];
     double alpha = state->plan->alpha_pass, margin = state->plan->margin[level];
     double t = (margin - fabs(s->difference)) / s->error;
-    if (!(t > state->pass_z) || !(fmax(s->skew[LC_LOW], s->skew[LC_HIGH]) * state->pass_z_cubed <= LC_SKEW_LIMIT))
+    if (!(t > state->pass_z) || !(fmax(s->skew[LC_LOW], s->skew[LC_HIGH]) * state->pass_weight <= LC_SKEW_LIMIT))
         return 0;
     if (s->df >= known->pass_df && t >= known->pass_t)
         return 1;
@@ -153,7 +155,8 @@ static int is_within(visit_state *state, int level, const lc_student *s)
         known->pass_df = s->df;
         known->pass_t = lc_t_quantile(alpha / (2.01 * LC_RESERVE), s->df);
     }
-    return lc_student_log_p(s, LC_LOW, margin, alpha) <= log(alpha) && lc_student_log_p(s, LC_HIGH, -margin, alpha) <= log(alpha);
+    return lc_student_log_p(s, LC_LOW, margin, alpha) <= log(alpha) &&
+           lc_student_log_p(s, LC_HIGH, -margin, alpha) <= log(alpha);
 }
 
 static void judge_tile(visit_state *state, int l, int x, int y, const lc_estimate *sum)
@@ -173,7 +176,7 @@ static void judge_tile(visit_state *state, int l, int x, int y, const lc_estimat
         ++level->still;
     } else {
         usable = 1;
-        if (s->skew[side_of(s)] * known->z_cubed <= LC_SKEW_LIMIT) {
+        if (s->skew[side_of(s)] * known->weight <= LC_SKEW_LIMIT) {
             ++level->tested;
             challenge_worst(state, &tile);
         } else {
@@ -221,8 +224,7 @@ static void prepare(visit_state *state, const lc_estimate *image)
         double tiles = (double)((state->width - 1) / size + 1) * ((state->height - 1) / size + 1);
         out->level[l].tiles = (uint32_t)tiles;
         out->level[l].alpha = state->plan->alpha_fail / out->levels / tiles;
-        double z = lc_normal_quantile(0.5 * out->level[l].alpha);
-        known->z_cubed = z * z * z;
+        known->weight = lc_skew_weight(0.5 * out->level[l].alpha);
         known->log_tests = log(2 * tiles * out->levels);
         known->screen_age = -1;
         known->pass_df = known->pass_t = INFINITY;
@@ -230,7 +232,7 @@ static void prepare(visit_state *state, const lc_estimate *image)
             known->pooled[side] = whole.testable ? whole.skew[side] * sqrt(tiles) : 0;
     }
     state->pass_z = lc_normal_quantile(state->plan->alpha_pass);
-    state->pass_z_cubed = state->pass_z * state->pass_z * state->pass_z;
+    state->pass_weight = lc_skew_weight(state->plan->alpha_pass);
 }
 
 static void conclude(visit_state *state)
@@ -252,7 +254,8 @@ static void conclude(visit_state *state)
         out->verdict = LC_PASS;
 }
 
-lc_status lc_pyramid_judge(lc_pyramid *out, const lc_estimate *field, int width, int height, const lc_pyramid_plan *plan, lc_error *err)
+lc_status lc_pyramid_judge(lc_pyramid *out, const lc_estimate *field, int width, int height,
+                           const lc_pyramid_plan *plan, lc_error *err)
 {
     memset(out, 0, sizeof *out);
     out->verdict = LC_GO_ON;
@@ -267,7 +270,8 @@ lc_status lc_pyramid_judge(lc_pyramid *out, const lc_estimate *field, int width,
         for (int x = 0; x < width; ++x) {
             const lc_estimate *e = &field[(size_t)y * (size_t)width + (size_t)x];
             if (!is_sound(e))
-                return lc_fail(err, LC_BAD_INPUT, "pixel (%d, %d): difference %g, variances %g and %g, expected finite numbers", x, y,
+                return lc_fail(err, LC_BAD_INPUT,
+                               "pixel (%d, %d): difference %g, variances %g and %g, expected finite numbers", x, y,
                                e->difference, e->arm[0].variance, e->arm[1].variance);
             lc_estimate_add(&sum, e);
         }

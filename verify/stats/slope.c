@@ -10,12 +10,14 @@ static lc_status check_points(const double *x, const double *y, const double *si
     if (count < least)
         return lc_fail(err, LC_BAD_INPUT, "%zu points, expected %zu or more", count, least);
     for (size_t i = 0; i < count; ++i)
-        if (!(x[i] > 0 && x[i] < INFINITY && y[i] > 0 && y[i] < INFINITY && (!sigma || (sigma[i] > 0 && sigma[i] < INFINITY))))
+        if (!(x[i] > 0 && x[i] < INFINITY && y[i] > 0 && y[i] < INFINITY &&
+              (!sigma || (sigma[i] > 0 && sigma[i] < INFINITY))))
             return lc_fail(err, LC_BAD_INPUT, "point %zu (%g, %g), expected finite numbers above 0", i, x[i], y[i]);
     return LC_OK;
 }
 
-lc_status lc_slope_fit(lc_slope *out, const double *x, const double *y, const double *sigma, size_t count, double alpha, lc_error *err)
+lc_status lc_slope_fit(lc_slope *out, const double *x, const double *y, const double *sigma, size_t count, double alpha,
+                       lc_error *err)
 {
     lc_status status = check_points(x, y, sigma, count, err);
     if (status)

@@ -10,8 +10,8 @@
 #include "core/lightcheck.h"
 
 static const double LN2 = 0.69314718055994530942;
-static const double TINY = 1e-300;     /* keeps Lentz's quotients from 0 / 0 */
-enum { FRACTION_STEPS = 1000000 };     /* beta needs O(sqrt(a + b)) */
+static const double TINY = 1e-300; /* keeps Lentz's quotients from 0 / 0 */
+enum { FRACTION_STEPS = 1000000 }; /* beta needs O(sqrt(a + b)) */
 static const double FRACTION_ERROR = 1e-15;
 
 static int is_probability(double alpha)
@@ -130,7 +130,8 @@ double lc_t_quantile(double alpha, double df)
     double s = 0.5 * log(df * expm1(fmin(z * z / df, 600)));
     for (int i = 0; i < 200; ++i) {
         double t = exp(s), log_p = lc_t_log_sf(t, df);
-        double log_density = -log_norm - 0.5 * (df + 1) * log1p(t * t / df);
+        double ratio = t * t / df, log_ratio = isinf(ratio) ? 2 * s - log(df) : log1p(ratio);
+        double log_density = -log_norm - 0.5 * (df + 1) * log_ratio;
         double step = (log_p - target) * exp(log_p - log_density - s);
         s += fmax(-20, fmin(20, step));
         if (fabs(step) < 1e-13 * fmax(1, fabs(s)))

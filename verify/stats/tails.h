@@ -2,9 +2,9 @@
  *
  * tails.h: tails of the normal, t, F, beta and chi-square distributions, far out, and their inverses.
  *
- * Survival functions, never 1 - cdf, and as logarithms, so that p = 1e-300 and far beyond are numbers like others. GSL gives the
- * special functions and the normal quantile; its own inverses of t, F and beta are not used, because they abort the
- * program where they do not converge, which they do for common arguments (beta(1, 1e7) at 5e-7).
+ * Survival functions, never 1 - cdf, and as logarithms, so that p = 1e-300 and far beyond are numbers like others. GSL
+ * gives the special functions and the normal quantile; its own inverses of t, F and beta are not used, because they
+ * abort the program where they do not converge, which they do for common arguments (beta(1, 1e7) at 5e-7).
  *
  * All: NaN in, or a parameter out of range, gives NaN. Any thread, no globals.
  */
@@ -16,7 +16,8 @@ double lc_normal_log_sf(double z);
 /* z with P(Z >= z) = alpha, alpha in (0, 1), down to 1e-300. Wichura, AS 241 (GSL). */
 double lc_normal_quantile(double alpha);
 
-/* ln P(T >= t) for Student's t with df > 0 degrees of freedom (INFINITY: normal); DLMF 8.17.22 for I_x(df / 2, 1 / 2). */
+/* ln P(T >= t) for Student's t with df > 0 degrees of freedom (INFINITY: normal); DLMF 8.17.22 for I_x(df / 2, 1 / 2).
+ */
 double lc_t_log_sf(double t, double df);
 /* t with P(T >= t) = alpha, alpha in (0, 1); relative error about 1e-12. Newton's method on ln P over ln t from
  * sqrt(df expm1(z^2 / df)), Hill, CACM 13(10), 1970. */

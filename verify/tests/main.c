@@ -13,6 +13,9 @@ static Suite *(*const suites[])(void) = {
     lc_suite_outfile,
     lc_suite_exr,
     lc_suite_png,
+    lc_suite_stats,
+    lc_suite_stats_estimate,
+    lc_suite_stats_pyramid,
 };
 
 int main(void)

@@ -13,5 +13,8 @@ Suite *lc_suite_analytic(void);
 Suite *lc_suite_outfile(void);
 Suite *lc_suite_exr(void);
 Suite *lc_suite_png(void);
+Suite *lc_suite_stats(void);
+Suite *lc_suite_stats_estimate(void);
+Suite *lc_suite_stats_pyramid(void);
 
 #endif
