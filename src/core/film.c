@@ -35,7 +35,8 @@ static void lanes_set(struct lanes *lanes, const double channel[3])
 }
 
 /* Sums of x - origin over the block, and the largest x. */
-static void block_first_pass(struct lanes *sum, struct lanes *max, const struct lanes *origin, const double *x, int size)
+static void block_first_pass(struct lanes *sum, struct lanes *max, const struct lanes *origin, const double *x,
+                             int size)
 {
     struct lanes s = {{0}}, m = *origin;
     int i = 0;
@@ -183,10 +184,11 @@ static size_t pixel_count(const lc_film *film) { return (size_t)film->width * (s
 static lc_status check_same_image(const lc_film *a, const lc_film *b, lc_error *err)
 {
     if (a->width != b->width || a->height != b->height)
-        return lc_fail(err, LC_BAD_INPUT, "cannot merge images of %dx%d and %dx%d pixels", a->width, a->height, b->width,
-                       b->height);
+        return lc_fail(err, LC_BAD_INPUT, "cannot merge images of %dx%d and %dx%d pixels", a->width, a->height,
+                       b->width, b->height);
     if (strcmp(a->scene, b->scene) != 0)
-        return lc_fail(err, LC_BAD_INPUT, "cannot merge renders of different scenes, '%s' and '%s'", a->scene, b->scene);
+        return lc_fail(err, LC_BAD_INPUT, "cannot merge renders of different scenes, '%s' and '%s'", a->scene,
+                       b->scene);
     if (strcmp(a->estimator, b->estimator) != 0)
         return lc_fail(err, LC_BAD_INPUT, "cannot merge renders by different estimators, '%s' and '%s'", a->estimator,
                        b->estimator);

@@ -234,9 +234,10 @@ void lc_pixel_add(lc_pixel *pixel, const double (*samples)[3], int count);
 void lc_pixel_merge(lc_pixel *into, const lc_pixel *from);
 /* Variance of the mean, m2 / (n (n - 1)); 0 for n < 2. */
 double lc_pixel_variance(const lc_pixel *pixel, int channel);
-/* Pastes shards of one render (with the last of them it is 0 of 1), or averages whole renders of different streams or ranges, weighted by n.
- * LC_BAD_INPUT, and `into` untouched, for different sizes, scenes, estimators, bounces, a shard or a sample range that both have, a film of unknown
- * samples (count = 0). Third moments, max and batches survive only when both have them. */
+/* Pastes shards of one render (with the last of them it is 0 of 1), or averages whole renders of different streams or
+ * ranges, weighted by n. LC_BAD_INPUT, and `into` untouched, for different sizes, scenes, estimators or bounces, a
+ * shard or sample that both have, a film of unknown samples (count = 0). Third moments, max and batches survive only when
+ * both have them. */
 lc_status lc_film_merge(lc_film *into, const lc_film *from, lc_error *err);
 /* Tiles of LC_TILE^2 pixels, row by row, are what threads and shards share out. Tile t belongs to shard t mod shards. */
 enum { LC_TILE = 8 };

@@ -142,8 +142,8 @@ static int open_target(lc_outfile *file)
         errno = ENOENT;
         return -1;
     }
-    if (exists && faccessat(AT_FDCWD, file->path, W_OK, AT_EACCESS) != 0) /* rename alone would replace what was write-protected */
-        return -1;
+    if (exists && faccessat(AT_FDCWD, file->path, W_OK, AT_EACCESS) != 0)
+        return -1; /* rename alone would replace what was write-protected */
     file->target = follow_links(file->path);
     if (!file->target)
         return -1;

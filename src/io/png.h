@@ -5,8 +5,9 @@
 
 #include "core/host.h"
 
-/* Writes linear colours, row by row from the top, times 2^exposure [stops], by the sRGB transfer function of IEC 61966-2-1;
- * clamped to [0, 1], a pixel with a NaN is magenta. Width and height in [1, LC_MAX_SIZE], else LC_BAD_INPUT; LC_FAULT on I/O. */
+/* Writes linear colours, row by row from the top, times 2^exposure [stops], by the sRGB transfer function of
+ * IEC 61966-2-1; clamped to [0, 1], a pixel with a NaN is magenta. Width and height in [1, LC_MAX_SIZE], else
+ * LC_BAD_INPUT; LC_FAULT on I/O. */
 lc_status lc_png_write(const char *path, int width, int height, const double (*rgb)[3], double exposure, lc_error *err);
 
 /* The same of a film's means. */

@@ -94,6 +94,18 @@ START_TEST(blocks_of_any_length)
 }
 END_TEST
 
+START_TEST(the_largest_may_be_below_zero)
+{
+    const double x[2][3] = {{-3, -2, 0}, {-4, -1, -1}}; /* an estimator's samples are not, differences are */
+    lc_pixel pixel;
+    memset(&pixel, 0, sizeof pixel);
+    lc_pixel_add(&pixel, x, 2);
+    ck_assert_double_eq(pixel.c[0].max, -3);
+    ck_assert_double_eq(pixel.c[1].max, -1);
+    ck_assert_double_eq(pixel.c[2].max, 0);
+}
+END_TEST
+
 START_TEST(small_spread_on_a_large_mean)
 {
     enum { N = 640 };
@@ -342,7 +354,13 @@ START_TEST(ranges_join_and_never_overlap)
     ck_assert_int_eq(a->more_count, 0);
     ck_assert_int_eq(lc_film_merge(a, arm, &err), LC_OK); /* another stream may have the same samples */
     ck_assert_int_eq(lc_film_merge(a, arm, &err), LC_BAD_INPUT);
-    lc_film *all[] = {a, b, c, d, gap, arm};
+    /* the last sample alone is shared; and ranges that touch, but of two streams, stay apart */
+    lc_film *last = make_film(1, 1, 5, 209, 1), *next = make_film(1, 1, 6, 0, 10), *touch = make_film(1, 1, 7, 10, 5);
+    ck_assert_int_eq(lc_film_merge(a, last, &err), LC_BAD_INPUT);
+    ck_assert_int_eq(lc_film_merge(next, touch, &err), LC_OK);
+    ck_assert_uint_eq(next->count, 10);
+    ck_assert_int_eq(next->more_count, 1);
+    lc_film *all[] = {a, b, c, d, gap, arm, last, next, touch};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; ++i)
         lc_film_free(all[i]);
 }
@@ -427,6 +445,7 @@ Suite *lc_suite_film(void)
     TCase *tc = tcase_create("pixel");
     tcase_add_test(tc, one_two_three_by_hand);
     tcase_add_loop_test(tc, blocks_of_any_length, 1, LC_BLOCK + 1);
+    tcase_add_test(tc, the_largest_may_be_below_zero);
     tcase_add_test(tc, small_spread_on_a_large_mean);
     tcase_add_test(tc, a_constant_has_no_variance);
     tcase_add_test(tc, batches_hold_the_means_of_blocks);

