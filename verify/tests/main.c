@@ -7,6 +7,7 @@
 static Suite *(*const suites[])(void) = {
     lc_suite_status,
     lc_suite_analytic,
+    lc_suite_analytic_direct,
 };
 
 int main(void)

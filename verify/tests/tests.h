@@ -7,5 +7,6 @@
 
 Suite *lc_suite_status(void);
 Suite *lc_suite_analytic(void);
+Suite *lc_suite_analytic_direct(void);
 
 #endif
