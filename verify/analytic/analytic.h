@@ -129,10 +129,10 @@ double lc_slab_reflectance(double face, int internal);
 /* Exact irradiance [W m^-2] at p with unit normal n by all emitters of a description, each seen directly: areas,
  * points, directional lights, sky. Shapes hide each other exactly, and may touch but not cut through each other;
  * every shape hides, glass as well. Where nothing hides, and where flat shapes hide flat lamps, closed forms (1e-10);
- * where a disk, a sphere or the sky takes part, quadrature over the azimuth (1e-8). A shape never hides itself; p may
- * lie on a shape, to 1e-9 of its distance. Lo = rho E / pi. LC_BAD_INPUT where no form applies: a checkerboard lamp
- * that is neither a rectangle, nor a sphere seen from its own inner wall; a "sphere" that is none. LC_FAULT without
- * memory or when the quadrature does not converge. Uses the description's numbers only. */
+ * where a disk, a sphere or the sky takes part, quadrature over the azimuth (1e-10). A shape never hides itself; p
+ * may lie on a shape, to 1e-9 of its distance. Lo = rho E / pi. LC_BAD_INPUT where no form applies: a checkerboard
+ * lamp that is neither a rectangle, nor a sphere seen from its own inner wall; a "sphere" that is none. LC_FAULT
+ * without memory or when the quadrature does not converge. Uses the description's numbers only. */
 lc_status lc_direct_irradiance(lc_rgb *out, const lc_scene_desc *desc, lc_vec3 p, lc_vec3 n, lc_error *err);
 
 /* The same as if nothing hid anything: what a tracer without shadow rays would compute (the sky fills the
@@ -141,10 +141,10 @@ lc_status lc_direct_unoccluded(lc_rgb *out, const lc_scene_desc *desc, lc_vec3 p
 
 /* ---- quadrature ------------------------------------------------------------------------------------------- */
 
-/* Integral of f over [a, b], a <= b, to max(absolute, relative |result|): GSL's adaptive 21-point Gauss-Kronrod rule
+/* Integral of f over [a, b], a <= b, to max(absolute, relative |result|): GSL's doubly adaptive Clenshaw-Curtis rule
  * after x = a + (b - a) t^2 (3 - 2 t), which makes square-root ends smooth; kinks inside cost samples but no
  * accuracy. LC_FAULT without memory, or when the estimated error stays above 100 times what was asked. Source:
- * Piessens et al., QUADPACK, 1983 (QAG). */
+ * Gonnet, Increasing the reliability of adaptive quadrature using explicit interpolants, ACM TOMS 37(3), 2010. */
 typedef double lc_integrand(double x, void *user);
 lc_status lc_quadrature(double *out, lc_integrand *f, void *user, double a, double b, double absolute, double relative,
                         lc_error *err);

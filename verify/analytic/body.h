@@ -12,7 +12,7 @@
  * and point, far less than anything a scene means. */
 #define LC_TOUCH 1e-9
 
-enum { LC_BODY_CORNERS = 8, LC_BODY_AZIMUTHS = 8 };
+enum { LC_BODY_CORNERS = 8, LC_BODY_AZIMUTHS = 8, LC_BODY_CROSSINGS = 16 };
 
 /* SKY: the hemisphere itself, infinitely far. */
 typedef enum lc_body_kind { LC_BODY_POLYGON, LC_BODY_ELLIPSE, LC_BODY_BALL, LC_BODY_SKY } lc_body_kind;
@@ -63,6 +63,10 @@ int lc_body_hides_point(const lc_body *body, lc_vec3 target);
 int lc_body_interval(const lc_body *body, double cos_phi, double sin_phi, double q[2]);
 /* Azimuths in any period between which the interval's ends are smooth; returns their number <= LC_BODY_AZIMUTHS. */
 int lc_body_azimuths(const lc_body *body, double *phi);
+/* Azimuths where the outlines of two bodies cross; returns their number <= LC_BODY_CROSSINGS. GSL must be silent. */
+int lc_body_crossings(const lc_body *first, const lc_body *second, double *phi);
+/* Keeps GSL from aborting the process where it also returns a status. */
+void lc_gsl_silence(void);
 
 /* The part of a polygon with x . plane >= offset; `out` needs room for twice `count` (a convex polygon: count + 1).
  * Returns its corners. */

@@ -41,7 +41,7 @@ static void shadow_of(struct shadow *shadow, const lc_body *hider)
     }
     /* touching is not hiding */
     shadow->plane[shadow->count] = lc_scale(sign, hider->normal);
-    shadow->offset[shadow->count++] = fabs(hider->offset) + LC_TOUCH * (lc_length(hider->middle) + hider->reach);
+    shadow->offset[shadow->count++] = fabs(hider->offset) + 0.01 * LC_TOUCH * (lc_length(hider->middle) + hider->reach);
 }
 
 static lc_status visible(double *sum, const struct piece *piece, const struct hiders *hiders, int next, lc_error *err);

@@ -3,15 +3,15 @@
  *
  * In polar coordinates about the receiver's normal, int cos dOmega = int dphi int cos t sin t dt = int dphi [q] / 2,
  * q = sin^2 t: the inner integral is exact. A vertical half-plane meets a convex body in ONE interval of q, so what
- * is visible at an azimuth is an interval minus intervals; their ends are smooth between known azimuths (corners,
- * tangents, horizon), and where two of them cross there is a mere kink, which bisection isolates. */
+ * is visible at an azimuth is an interval minus intervals; their ends are smooth between known azimuths: corners,
+ * tangents, the horizon and the crossings of outlines. */
 #include "verify/analytic/body.h"
 
 #include <stdlib.h>
 
 /* Goals, relative to what the lamp gives unhidden. */
 #define SCAN_LAMP 1e-11
-#define SCAN_HIDDEN 1e-10
+#define SCAN_HIDDEN 1e-11
 
 struct scan {
     const lc_body *lamp;
@@ -60,12 +60,16 @@ static double visible_at(double phi, void *user)
     return (sum + fmax(0, q[1] - from)) / (2 * LC_PI);
 }
 
-/* All azimuths where something begins, ends or has a corner, sorted in [-pi, pi], with both ends. */
+/* All azimuths where something begins, ends, has a corner or crosses, sorted in [-pi, pi], with both ends. */
 static int break_points(const struct scan *scan, double *phi)
 {
     int count = lc_body_azimuths(scan->lamp, phi);
-    for (int i = 0; i < scan->count; ++i)
+    for (int i = 0; i < scan->count; ++i) {
         count += lc_body_azimuths(scan->hiders[i], phi + count);
+        count += lc_body_crossings(scan->lamp, scan->hiders[i], phi + count);
+        for (int j = 0; j < i; ++j)
+            count += lc_body_crossings(scan->hiders[j], scan->hiders[i], phi + count);
+    }
     for (int i = 0; i < count; ++i)
         phi[i] = remainder(phi[i], 2 * LC_PI);
     phi[count++] = -LC_PI;
@@ -105,13 +109,14 @@ lc_status lc_scan_factor(double *factor, const lc_body *lamp, const lc_body *con
 {
     struct scan scan = {lamp, hiders, 0, NULL};
     size_t bodies = (size_t)count + 1;
-    double *phi = malloc((bodies * LC_BODY_AZIMUTHS + 2) * sizeof *phi);
+    double *phi = malloc((bodies * LC_BODY_AZIMUTHS + bodies * bodies / 2 * LC_BODY_CROSSINGS + 2) * sizeof *phi);
     scan.hidden = malloc(bodies * sizeof *scan.hidden);
     lc_status status;
     if (!phi || !scan.hidden) {
         status = lc_fail(err, LC_FAULT, "visible part of a lamp: out of memory");
         goto cleanup;
     }
+    lc_gsl_silence();
     int points = break_points(&scan, phi);
     double scale = rough(&scan, phi, points);
     scan.count = count;

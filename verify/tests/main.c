@@ -16,6 +16,7 @@ static Suite *(*const suites[])(void) = {
     lc_suite_stats,
     lc_suite_stats_estimate,
     lc_suite_stats_pyramid,
+    lc_suite_analytic_direct,
 };
 
 int main(void)

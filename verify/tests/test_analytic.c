@@ -8,29 +8,7 @@
 
 #include "verify/analytic/analytic.h"
 #include "verify/analytic/body.h"
-
-/* Fails when a and b differ by more than tol of the larger, and says by how much. */
-#define ASSERT_CLOSE(a, b, tol) \
-    do { \
-        double a_ = (a), b_ = (b); \
-        ck_assert_msg(fabs(a_ - b_) <= (tol) * fmax(fabs(a_), fabs(b_)), "%s = %.17g, expected %.17g, off by %.2g", #a, a_, b_, \
-                      fabs(a_ - b_) / fmax(fabs(a_), fabs(b_))); \
-    } while (0)
-
-static double uniform(unsigned *state)
-{
-    *state = *state * 1664525u + 1013904223u;
-    return (*state >> 8) / 16777216.0;
-}
-
-static lc_vec3 direction(unsigned *state)
-{
-    lc_vec3 v;
-    do {
-        v = lc_vec(2 * uniform(state) - 1, 2 * uniform(state) - 1, 2 * uniform(state) - 1);
-    } while (lc_length(v) > 1 || lc_length(v) < 0.1);
-    return lc_normalize(v);
-}
+#include "verify/tests/analytic_help.h"
 
 /* F of the parallelogram o + s a + t b, s and t in [0, 1], emitting along a x b: product Gauss rule over its area. */
 static double area_quadrature(lc_vec3 o, lc_vec3 a, lc_vec3 b, lc_vec3 p, lc_vec3 n)
@@ -181,7 +159,8 @@ START_TEST(ellipse_is_disk_or_many_triangles)
     }
     ck_assert_int_eq(lc_ellipse_factor(&f, lc_vec(0, 0, 0.9), x, y, p, n, NULL), LC_OK); /* from behind */
     ck_assert(f == 0);
-    /* any pose, the horizon cutting or not: Lambert's sum over triangles with one corner in the centre; Richardson for the rim */
+    /* any pose, the horizon cutting or not: Lambert's sum over triangles with one corner in the centre; Richardson
+     * for the rim */
     unsigned state = 7;
     int cut = 0;
     for (int i = 0; i < 40; ++i) {
@@ -243,7 +222,8 @@ START_TEST(sphere_limits)
     ck_assert(lc_sphere_factor(lc_vec(0, 0, 1), 2, p, n) == 0);         /* inside */
     ASSERT_CLOSE(lc_sphere_factor(lc_vec(2, 0, 0), 2, p, n), 0.5, 1e-15); /* on it, edge on */
     /* the three cases meet */
-    ASSERT_CLOSE(lc_sphere_factor(lc_vec(3, 0, 2 - 1e-9), 2, p, n), lc_sphere_factor(lc_vec(3, 0, 2 + 1e-9), 2, p, n), 1e-8);
+    double over = lc_sphere_factor(lc_vec(3, 0, 2 + 1e-9), 2, p, n);
+    ASSERT_CLOSE(lc_sphere_factor(lc_vec(3, 0, 2 - 1e-9), 2, p, n), over, 1e-8);
     ck_assert_double_le(lc_sphere_factor(lc_vec(3, 0, -2 + 1e-6), 2, p, n), 1e-9);
     /* half below, far away: the half disk, F = 2/(3 pi) / H^3 */
     ASSERT_CLOSE(lc_sphere_factor(lc_vec(1e6, 0, 0), 1, p, n), 2 / (3 * LC_PI) * 1e-18, 1e-10);
@@ -307,8 +287,9 @@ START_TEST(reciprocity)
     ck_assert_int_eq(lc_quadrature(&f, outer_plate, &unit, 0, 1, 1e-11, 1e-10, NULL), LC_OK);
     ASSERT_CLOSE(f, 0.199825, 3e-6);
     /* a small disk and a large sphere above it: the mean over the sphere of F to the disk is F / 4 per area */
-    ASSERT_CLOSE(lc_reciprocal_factor(lc_sphere_factor(lc_vec(0, 0, 5), 2, lc_vec(0, 0, 0), lc_vec(0, 0, 1)), 1e-6, 16 * LC_PI),
-                 1e-6 * 0.16 / (16 * LC_PI), 1e-14);
+    double disk_to_sphere = lc_sphere_factor(lc_vec(0, 0, 5), 2, lc_vec(0, 0, 0), lc_vec(0, 0, 1));
+    double back = lc_reciprocal_factor(disk_to_sphere, 1e-6, 16 * LC_PI);
+    ASSERT_CLOSE(back, 1e-6 * 0.16 / (16 * LC_PI), 1e-14);
 }
 END_TEST
 
@@ -324,7 +305,7 @@ START_TEST(inside_of_a_sphere)
     }
     ASSERT_CLOSE(lc_inside_sphere_irradiance(0.7, 0.83, LC_ALL_REFLECTIONS), LC_PI * 0.7 / 0.17, 1e-14);
     ASSERT_CLOSE(lc_inside_sphere_irradiance(1, 1, 3), 3 * LC_PI, 1e-15);
-    ASSERT_CLOSE(lc_inside_sphere_irradiance(1, 0.9, 2000), lc_inside_sphere_irradiance(1, 0.9, LC_ALL_REFLECTIONS), 1e-14);
+    ASSERT_CLOSE(lc_inside_sphere_irradiance(1, 0.9, 2000), 10 * LC_PI, 1e-14);
 }
 END_TEST
 
@@ -338,7 +319,8 @@ static lc_rgb checker_at(const lc_texture *texture, double u, double v)
 
 START_TEST(checkerboard_over_a_sphere)
 {
-    const double scales[][4] = {{1, 1, 0, 0}, {2, 4, 0, 0}, {3, 2, 0.1, 0.3}, {-1.7, 2.3, 5.2, -3.1}, {0, 1, 0.7, 0}, {8, 5, -0.25, 0.125}};
+    const double scales[][4] = {{1, 1, 0, 0}, {2, 4, 0, 0}, {3, 2, 0.1, 0.3}, {-1.7, 2.3, 5.2, -3.1},
+                                {0, 1, 0.7, 0}, {8, 5, -0.25, 0.125}};
     for (size_t i = 0; i < sizeof scales / sizeof scales[0]; ++i) {
         const double *s = scales[i];
         lc_texture texture = {1, {{1, 0.5, 0}, {0.25, 2, 1}}, {s[0], s[1]}, {s[2], s[3]}};
@@ -410,7 +392,8 @@ START_TEST(flux_balance)
     ck_assert_double_le(fabs(lc_closed_mean_irradiance(10000, 96, 0.8, LC_ALL_REFLECTIONS) - 520.83), 0.005);
     ASSERT_CLOSE(lc_closed_mean_irradiance(96, 96, 0.5, 2), 1.5, 1e-15);
     /* a sphere is a closed scene */
-    ASSERT_CLOSE(lc_closed_mean_irradiance(LC_PI * 0.4 * 12, 12, 0.6, 5), lc_inside_sphere_irradiance(0.4, 0.6, 5), 1e-14);
+    double sphere = lc_inside_sphere_irradiance(0.4, 0.6, 5);
+    ASSERT_CLOSE(lc_closed_mean_irradiance(LC_PI * 0.4 * 12, 12, 0.6, 5), sphere, 1e-14);
 }
 END_TEST
 
@@ -452,7 +435,8 @@ START_TEST(slab)
     }
     ASSERT_CLOSE(lc_slab_transmittance(face, 60), lc_slab_transmittance(face, LC_ALL_REFLECTIONS), 1e-14);
     ck_assert(lc_slab_transmittance(1, LC_ALL_REFLECTIONS) == 0);
-    ASSERT_CLOSE(lc_slab_transmittance(0.2, LC_ALL_REFLECTIONS) + lc_slab_reflectance(0.2, LC_ALL_REFLECTIONS), 1, 1e-15);
+    double reflected = lc_slab_reflectance(0.2, LC_ALL_REFLECTIONS);
+    ASSERT_CLOSE(lc_slab_transmittance(0.2, LC_ALL_REFLECTIONS), 1 - reflected, 1e-15);
 }
 END_TEST
 
