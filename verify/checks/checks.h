@@ -58,7 +58,8 @@ int lc_sees_everything(const lc_scene *scene, const lc_estimator *estimator);
 
 /* Radiance seen at a hit, and a number that changes where the radiance jumps. With value = NULL only the kind is asked for. Any thread. */
 typedef lc_status lc_view_fn(lc_rgb *value, int *kind, const lc_scene *scene, const lc_hit *hit, void *user, lc_error *err);
-/* The mean of a view over each pixel by 3 x 3 Gauss-Legendre nodes; pixels of more than one kind are skipped. threads 0: one a core. */
-lc_status lc_expect_view(lc_expected *out, lc_view_fn *view, void *user, const lc_scene *scene, int threads, lc_error *err);
+/* The mean of a view over each pixel, by adaptive quadrature to `tolerance` times the image's mean; pixels of more than one kind are
+ * skipped. threads 0: one a core. */
+lc_status lc_expect_view(lc_expected *out, lc_view_fn *view, void *user, const lc_scene *scene, double tolerance, int threads, lc_error *err);
 
 #endif

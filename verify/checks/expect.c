@@ -7,11 +7,15 @@
 
 #include "verify/checks/checks.h"
 
+/* Finest cut of a pixel. */
+#define LEAST_SIDE (1.0 / 32)
+
 typedef struct view {
     lc_view_fn *function;
     void *user;
     const lc_scene *scene;
     lc_expected *out;
+    double error; /* that a pixel's mean may have */
     pthread_mutex_t lock; /* of what follows */
     int next_row;
     lc_status status;
@@ -47,28 +51,83 @@ static lc_status border_is_mixed(const view *v, int x, int y, int kind, int *mix
     return LC_OK;
 }
 
-static lc_status pixel_mean(const view *v, int x, int y, lc_error *err)
+/* Mean over a square by 3 x 3 Gauss-Legendre nodes, exact to degree 5. `mixed` is set where a node is of another kind. */
+static lc_status gauss(const view *v, double x, double y, double side, int kind, lc_rgb *mean, int *mixed, lc_error *err)
 {
-    /* Three-point Gauss-Legendre nodes on [0, 1] and their weights: exact to degree 5. */
     static const double nodes[3] = {0.11270166537925831148, 0.5, 0.88729833462074168852};
     static const double weights[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
+    *mean = lc_black();
+    for (int i = 0; i < 9; ++i) {
+        lc_rgb value;
+        int here;
+        lc_status status = look(v, x + side * nodes[i % 3], y + side * nodes[i / 3], &value, &here, err);
+        if (status != LC_OK)
+            return status;
+        *mixed |= here != kind;
+        *mean = lc_rgb_add(*mean, lc_rgb_scale(weights[i % 3] * weights[i / 3], value));
+    }
+    return LC_OK;
+}
+
+/* The same, cut in four until halving the side changes the pixel's mean by no more than v->error: kinks (horizons, the edges of
+ * penumbras) run through pixels, and a dark pixel has so little noise that a render would show the rule's error. */
+static lc_status adapt(const view *v, double x, double y, double side, int kind, lc_rgb *mean, int *mixed, lc_error *err)
+{
+    lc_rgb coarse = *mean, quarter[4];
+    *mean = lc_black();
+    for (int i = 0; i < 4; ++i) {
+        lc_status status = gauss(v, x + side / 2 * (i % 2), y + side / 2 * (i / 2), side / 2, kind, &quarter[i], mixed, err);
+        if (status != LC_OK)
+            return status;
+        *mean = lc_rgb_add(*mean, lc_rgb_scale(0.25, quarter[i]));
+    }
+    double change = fmax(fabs(mean->r - coarse.r), fmax(fabs(mean->g - coarse.g), fabs(mean->b - coarse.b)));
+    if (*mixed || change * side * side <= v->error || side <= LEAST_SIDE)
+        return LC_OK;
+    *mean = lc_black();
+    for (int i = 0; i < 4; ++i) {
+        lc_status status = adapt(v, x + side / 2 * (i % 2), y + side / 2 * (i / 2), side / 2, kind, &quarter[i], mixed, err);
+        if (status != LC_OK)
+            return status;
+        *mean = lc_rgb_add(*mean, lc_rgb_scale(0.25, quarter[i]));
+    }
+    return LC_OK;
+}
+
+static lc_status pixel_mean(const view *v, int x, int y, lc_error *err)
+{
     size_t index = (size_t)y * (size_t)v->out->width + (size_t)x;
-    int kind, here, mixed;
-    lc_rgb mean = lc_black(), value;
+    int kind, mixed;
+    lc_rgb mean = lc_black();
     lc_status status = look(v, x + 0.5, y + 0.5, NULL, &kind, err);
     if (status == LC_OK)
         status = border_is_mixed(v, x, y, kind, &mixed, err);
-    for (int i = 0; i < 9 && status == LC_OK && !mixed; ++i) {
-        status = look(v, x + nodes[i % 3], y + nodes[i / 3], &value, &here, err);
-        mixed = here != kind;
-        mean = lc_rgb_add(mean, lc_rgb_scale(weights[i % 3] * weights[i / 3], value));
-    }
+    if (status == LC_OK && !mixed)
+        status = gauss(v, x, y, 1.0, kind, &mean, &mixed, err);
+    if (status == LC_OK && !mixed)
+        status = adapt(v, x, y, 1.0, kind, &mean, &mixed, err);
     if (status != LC_OK)
         return status;
     v->out->skip[index] = (unsigned char)mixed;
     v->out->rgb[3 * index] = mixed ? 0 : mean.r;
     v->out->rgb[3 * index + 1] = mixed ? 0 : mean.g;
     v->out->rgb[3 * index + 2] = mixed ? 0 : mean.b;
+    return LC_OK;
+}
+
+/* Mean radiance of the image, roughly: the scale of the errors. */
+static lc_status rough_mean(const view *v, double *mean, lc_error *err)
+{
+    double sum = 0;
+    for (int i = 0; i < 64; ++i) {
+        lc_rgb value;
+        int kind;
+        lc_status status = look(v, v->out->width * ((i % 8) + 0.5) / 8, v->out->height * ((i / 8) + 0.5) / 8, &value, &kind, err);
+        if (status != LC_OK)
+            return status;
+        sum += (value.r + value.g + value.b) / 3;
+    }
+    *mean = sum / 64;
     return LC_OK;
 }
 
@@ -94,12 +153,15 @@ static void *work(void *argument)
     }
 }
 
-lc_status lc_expect_view(lc_expected *out, lc_view_fn *function, void *user, const lc_scene *scene, int threads, lc_error *err)
+lc_status lc_expect_view(lc_expected *out, lc_view_fn *function, void *user, const lc_scene *scene, double tolerance, int threads, lc_error *err)
 {
-    view v = {function, user, scene, out, PTHREAD_MUTEX_INITIALIZER, 0, LC_OK, {""}};
+    view v = {function, user, scene, out, 0, PTHREAD_MUTEX_INITIALIZER, 0, LC_OK, {""}};
     pthread_t thread[64];
     long wanted = threads > 0 ? threads : sysconf(_SC_NPROCESSORS_ONLN);
     int started = 0;
+    double scale = 0;
+    v.status = rough_mean(&v, &scale, &v.err);
+    v.error = tolerance * scale;
     while (started < 63 && started < wanted - 1 && pthread_create(&thread[started], NULL, work, &v) == 0)
         ++started;
     work(&v);

@@ -26,14 +26,13 @@ static lc_status inside_view(lc_rgb *value, int *kind, const lc_scene *scene, co
 
 static lc_status expect_inside(lc_expected *out, const lc_claim *claim, const lc_scene *scene, int threads, lc_error *err)
 {
-    (void)claim;
     const lc_scene_desc *desc = lc_scene_description(scene);
     if (desc->shape_count != 1 || desc->shapes[0].kind != LC_SPHERE || !desc->shapes[0].emits)
         return lc_fail(err, LC_BAD_INPUT, "%s: a furnace of this kind is one emitting sphere", desc->name);
     lc_rgb le = lc_texture_sphere_mean(&desc->shapes[0].radiance);
     furnace_view furnace = {lc_color(lc_inside_sphere_irradiance(le.r, 0, 1), lc_inside_sphere_irradiance(le.g, 0, 1),
                                      lc_inside_sphere_irradiance(le.b, 0, 1))};
-    return lc_expect_view(out, inside_view, &furnace, scene, threads, err);
+    return lc_expect_view(out, inside_view, &furnace, scene, claim->tolerance, threads, err);
 }
 
 static lc_status plan(const lc_check *self, lc_claims *claims, const lc_scene *scene, const lc_estimator *estimator, lc_error *err)
