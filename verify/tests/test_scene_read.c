@@ -10,7 +10,9 @@
 
 #include "io/scene_read.h"
 
-#define FILM "<film type='hdrfilm'><integer name='width' value='8'/><integer name='height' value='4'/><rfilter type='box'/></film>"
+#define FILM                                                                                                           \
+    "<film type='hdrfilm'><integer name='width' value='8'/><integer name='height' value='4'/><rfilter "                \
+    "type='box'/></film>"
 #define SENSOR "<sensor type='perspective'>" FILM "</sensor>"
 #define SCENE(body) "<scene version='3.0.0'>\n" SENSOR "\n" body "</scene>"
 #define RECTANGLE(bsdf) SCENE("<shape type='rectangle'>" bsdf "</shape>")
@@ -58,18 +60,21 @@ static void vec_is(lc_vec3 a, double x, double y, double z)
 
 START_TEST(whole_scene)
 {
-    accept("<?xml version='1.0'?>\n<scene version='3.0.0'><!-- comment -->"
-           "<default name='k' value='0.25'/><default name='depth' value='3'/>"
-           "<integrator type='path'><integer name='max_depth' value='$depth'/><integer name='rr_depth' value='99'/></integrator>"
-           "<sensor type='perspective'><float name='fov' value='40'/><string name='fov_axis' value='y'/>"
-           "<transform name='to_world'><lookat origin='1 2 3' target='4 5 7' up='0 0 1'/></transform>"
-           "<sampler type='independent'><integer name='sample_count' value='7'/></sampler>" FILM "</sensor>"
-           "<shape type='rectangle'><ref id='late'/><transform name='to_world'><scale value='2'/><translate x='1'/></transform>"
-           "<emitter type='area'><rgb name='radiance' value='1, 2, 3'/></emitter></shape>"
-           "<bsdf type='diffuse' id='late'><rgb name='reflectance' value='$k 0.5 0.$depth'/></bsdf>"
-           "<emitter type='point'><point name='position' x='1' y='2' z='3'/><float name='intensity' value='4'/></emitter>"
-           "<emitter type='directional'><vector name='direction' value='0 0 -2'/></emitter>"
-           "<emitter type='constant'><rgb name='radiance' value='.1 .2 .3'/></emitter></scene>");
+    accept(
+        "<?xml version='1.0'?>\n<scene version='3.0.0'><!-- comment -->"
+        "<default name='k' value='0.25'/><default name='depth' value='3'/>"
+        "<integrator type='path'><integer name='max_depth' value='$depth'/><integer name='rr_depth' "
+        "value='99'/></integrator>"
+        "<sensor type='perspective'><float name='fov' value='40'/><string name='fov_axis' value='y'/>"
+        "<transform name='to_world'><lookat origin='1 2 3' target='4 5 7' up='0 0 1'/></transform>"
+        "<sampler type='independent'><integer name='sample_count' value='7'/></sampler>" FILM "</sensor>"
+        "<shape type='rectangle'><ref id='late'/><transform name='to_world'><scale value='2'/><translate "
+        "x='1'/></transform>"
+        "<emitter type='area'><rgb name='radiance' value='1, 2, 3'/></emitter></shape>"
+        "<bsdf type='diffuse' id='late'><rgb name='reflectance' value='$k 0.5 0.$depth'/></bsdf>"
+        "<emitter type='point'><point name='position' x='1' y='2' z='3'/><float name='intensity' value='4'/></emitter>"
+        "<emitter type='directional'><vector name='direction' value='0 0 -2'/></emitter>"
+        "<emitter type='constant'><rgb name='radiance' value='.1 .2 .3'/></emitter></scene>");
     ck_assert_str_eq(d.name, "t");
     ck_assert_int_eq(d.max_bounces, 2);
     ck_assert_int_eq(d.samples, 7);
@@ -124,7 +129,8 @@ START_TEST(transforms_are_mitsubas)
 }
 END_TEST
 
-/* Mitsuba: to_world * translate(center) * scale(radius); its print of center and radius for this file: [10, 20, 30], 20. */
+/* Mitsuba: to_world * translate(center) * scale(radius); its print of center and radius for this file: [10, 20,
+ * 30], 20. */
 START_TEST(sphere_center_and_radius_come_before_to_world)
 {
     accept(SCENE("<shape type='sphere'><point name='center' value='1 2 3'/><float name='radius' value='2'/>"
@@ -151,16 +157,16 @@ END_TEST
 
 START_TEST(blend_gives_the_weight_to_the_second)
 {
-    accept(RECTANGLE("<bsdf type='blendbsdf'><float name='weight' value='0.25'/>" GRAY(".4")
-                     "<bsdf type='conductor'><rgb name='specular_reflectance' value='1 .5 0'/></bsdf></bsdf>"));
+    accept(RECTANGLE("<bsdf type='blendbsdf'><float name='weight' value='0.25'/>" GRAY(
+        ".4") "<bsdf type='conductor'><rgb name='specular_reflectance' value='1 .5 0'/></bsdf></bsdf>"));
     color_is(d.materials[0].side[0].diffuse.color[0], .3, .3, .3);
     color_is(d.materials[0].side[0].mirror, .25, .125, 0);
     color_is(d.materials[0].side[1].mirror, 0, 0, 0);
     lc_scene_desc_release(&d);
     /* nested: .5 glass + .5 (.25 grey + .75 twosided) */
     accept(RECTANGLE("<bsdf type='blendbsdf'><float name='weight' value='0.5'/><bsdf type='dielectric'/>"
-                     "<bsdf type='blendbsdf'><float name='weight' value='0.75'/>" GRAY(".4") "<bsdf type='twosided'>" GRAY(".8")
-                     "</bsdf></bsdf></bsdf>"));
+                     "<bsdf type='blendbsdf'><float name='weight' value='0.75'/>" GRAY(
+                         ".4") "<bsdf type='twosided'>" GRAY(".8") "</bsdf></bsdf></bsdf>"));
     ck_assert_double_eq(d.materials[0].side[0].glass, .5);
     ck_assert_double_eq(d.materials[0].side[1].glass, .5);
     color_is(d.materials[0].side[0].diffuse.color[0], .35, .35, .35);
@@ -183,11 +189,13 @@ START_TEST(twosided_has_a_back)
 }
 END_TEST
 
-#define CHECKER(name, more) "<texture type='checkerboard' name='" name "'><rgb name='color0' value='.2 .4 .6'/>" more "</texture>"
+#define CHECKER(name, more)                                                                                            \
+    "<texture type='checkerboard' name='" name "'><rgb name='color0' value='.2 .4 .6'/>" more "</texture>"
 
 START_TEST(checkerboards)
 {
-    accept(DIFFUSE(CHECKER("reflectance", "<transform name='to_uv'><scale x='4' y='2'/><translate x='.5'/></transform>")));
+    accept(
+        DIFFUSE(CHECKER("reflectance", "<transform name='to_uv'><scale x='4' y='2'/><translate x='.5'/></transform>")));
     const lc_texture *t = &d.materials[0].side[0].diffuse;
     ck_assert_int_eq(t->is_checkerboard, 1);
     color_is(t->color[0], .2, .4, .6);
@@ -195,8 +203,9 @@ START_TEST(checkerboards)
     ck_assert_double_eq(t->scale[0] * 100 + t->scale[1] * 10 + t->offset[0], 420.5);
     lc_scene_desc_release(&d);
     /* half of it and half of a plain grey is again a checkerboard */
-    accept(SCENE("<texture type='checkerboard' id='t'/><shape type='sphere'><bsdf type='blendbsdf'><float name='weight' value='.5'/>"
-                 GRAY(".2") "<bsdf type='diffuse'><ref id='t' name='reflectance'/></bsdf></bsdf></shape>"));
+    accept(
+        SCENE("<texture type='checkerboard' id='t'/><shape type='sphere'><bsdf type='blendbsdf'><float name='weight' "
+              "value='.5'/>" GRAY(".2") "<bsdf type='diffuse'><ref id='t' name='reflectance'/></bsdf></bsdf></shape>"));
     color_is(d.materials[0].side[0].diffuse.color[0], .3, .3, .3);
     color_is(d.materials[0].side[0].diffuse.color[1], .2, .2, .2);
     lc_scene_desc_release(&d);
@@ -230,7 +239,8 @@ START_TEST(integrators)
     }
     refuse(SCENE("<integrator type='path'><integer name='max_depth' value='0'/></integrator>"), "max_depth 0");
     refuse(SCENE("<integrator type='path'><boolean name='hide_emitters' value='true'/></integrator>"), "hide_emitters");
-    refuse(SCENE("<integrator type='direct'><integer name='max_depth' value='2'/></integrator>"), "unknown property 'max_depth'");
+    refuse(SCENE("<integrator type='direct'><integer name='max_depth' value='2'/></integrator>"),
+           "unknown property 'max_depth'");
     refuse(SCENE("<integrator type='path'/><integrator type='direct'/>"), "second <integrator>");
     refuse(SCENE("<integrator type='volpath'/>"), "supported: path, direct");
 }
@@ -275,9 +285,10 @@ END_TEST
 
 START_TEST(numbers_are_strict)
 {
-    static const char *const bad[] = {"1.0x", "nan", "inf", "-inf", "0x1p-1", "1e999", "", "1 2", "1,2,3,4", "1;2;3", ".", "e5", "--1",
-                                      "1e", "0.5.5"};
-    static const char *const good[] = {"0.5", " .5 ", "+0.5", "5e-1", "0.5,0.5,0.5", "0.5, 0.5, 0.5", "5.0E-01", "0.5\t0.5\n0.5"};
+    static const char *const bad[] = {"1.0x",    "nan",   "inf", "-inf", "0x1p-1", "1e999", "",     "1 2",
+                                      "1,2,3,4", "1;2;3", ".",   "e5",   "--1",    "1e",    "0.5.5"};
+    static const char *const good[] = {"0.5",         " .5 ",          "+0.5",    "5e-1",
+                                       "0.5,0.5,0.5", "0.5, 0.5, 0.5", "5.0E-01", "0.5\t0.5\n0.5"};
     char text[600];
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; ++i) {
         snprintf(text, sizeof text, DIFFUSE("<rgb name='reflectance' value='%s'/>"), bad[i]);
@@ -312,7 +323,8 @@ END_TEST
 #define BLEND(weight, a, b) RECTANGLE("<bsdf type='blendbsdf'>" weight a b "</bsdf>")
 #define W "<float name='weight' value='.5'/>"
 #define GLASS(n) "<bsdf type='dielectric'><float name='int_ior' value='" n "'/></bsdf>"
-#define CAMERA(properties, film) "<scene version='3.0.0'><sensor type='perspective'>" properties film "</sensor></scene>"
+#define CAMERA(properties, film)                                                                                       \
+    "<scene version='3.0.0'><sensor type='perspective'>" properties film "</sensor></scene>"
 #define SIZE(w) "<film type='hdrfilm'><integer name='width' value='" w "'/><rfilter type='box'/></film>"
 
 START_TEST(bad_scenes)
@@ -352,8 +364,10 @@ START_TEST(bad_scenes)
         {SCENE("<emitter type='area'/>"), "outside a shape"},
         {SCENE("<emitter type='constant'/><emitter type='constant'/>"), "second constant"},
         {SCENE("<emitter type='directional'><vector name='direction' value='0'/></emitter>"), "length 0"},
-        {SCENE("<emitter type='directional'><transform name='to_world'><scale value='2'/></transform></emitter>"), "scale"},
-        {SCENE("<emitter type='point'><point name='position' value='0'/><transform name='to_world'/></emitter>"), "both"},
+        {SCENE("<emitter type='directional'><transform name='to_world'><scale value='2'/></transform></emitter>"),
+         "scale"},
+        {SCENE("<emitter type='point'><point name='position' value='0'/><transform name='to_world'/></emitter>"),
+         "both"},
         {SCENE("<emitter type='point'><point name='position' x='0' y='1'/></emitter>"), "all of x, y and z"},
         {RECTANGLE("<bsdf type='conductor'><string name='material' value='Au'/></bsdf>"), "supported: none"},
         {RECTANGLE("<bsdf type='dielectric'><string name='int_ior' value='ice'/></bsdf>"), "unknown material 'ice'"},
@@ -381,8 +395,10 @@ START_TEST(bad_scenes)
         {CAMERA("", ""), "without a <film>"},
         {CAMERA("", "<film type='hdrfilm'/>"), "no <rfilter"},
         {CAMERA("", "<film type='hdrfilm'><rfilter type='gaussian'/></film>"), "expected box"},
-        {CAMERA("", "<film type='hdrfilm'><integer name='crop_width' value='3'/><rfilter type='box'/></film>"), "crop_width"},
-        {CAMERA("", "<film type='hdrfilm'><string name='pixel_format' value='xyz'/><rfilter type='box'/></film>"), "supported: rgb"},
+        {CAMERA("", "<film type='hdrfilm'><integer name='crop_width' value='3'/><rfilter type='box'/></film>"),
+         "crop_width"},
+        {CAMERA("", "<film type='hdrfilm'><string name='pixel_format' value='xyz'/><rfilter type='box'/></film>"),
+         "supported: rgb"},
         {CAMERA("", SIZE("0")), "pixels"},
         {CAMERA("", SIZE("16385")), "pixels"},
         {CAMERA("<float name='fov' value='0'/>", FILM), "fov 0"},
@@ -393,7 +409,8 @@ START_TEST(bad_scenes)
         {CAMERA("<float name='near_clip' value='2'/><float name='far_clip' value='1'/>", FILM), "not below"},
         {CAMERA("<transform name='to_world'><scale value='2'/></transform>", FILM), "camera"},
         {CAMERA("<transform name='to_world'><scale x='-1'/></transform>", FILM), "camera"},
-        {CAMERA("<sampler type='independent'><integer name='sample_count' value='0'/></sampler>", FILM), "sample_count"},
+        {CAMERA("<sampler type='independent'><integer name='sample_count' value='0'/></sampler>", FILM),
+         "sample_count"},
         {"<!DOCTYPE scene [<!ENTITY a 'b'>]>" SCENE(""), "document type"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
@@ -437,8 +454,8 @@ END_TEST
 
 START_TEST(bytes_that_are_no_xml)
 {
-    static const char *const bad[] = {"\xff\xfe\x00", "\xc3\x28<scene/>", "<scene>\x01</scene>", "<scene version='3.0.0'></scen>",
-                                      "<scene version='3.0.0'>&lol;</scene>"};
+    static const char *const bad[] = {"\xff\xfe\x00", "\xc3\x28<scene/>", "<scene>\x01</scene>",
+                                      "<scene version='3.0.0'></scen>", "<scene version='3.0.0'>&lol;</scene>"};
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; ++i)
         refuse(bad[i], "not well-formed");
     ck_assert_int_eq(lc_scene_read_memory(&d, "<scene\0/>", 9, "t.xml", NULL, 0, &err), LC_BAD_INPUT);
@@ -450,8 +467,9 @@ END_TEST
 /* Every truncation of a good file is refused, and none crashes or leaks (asan). */
 START_TEST(truncations)
 {
-    const char *text = SCENE("<default name='a' value='1'/><shape type='sphere'><bsdf type='blendbsdf'><float name='weight' value='$a'/>"
-                             GRAY(".1") GRAY(".2") "</bsdf></shape><emitter type='point'/>");
+    const char *text =
+        SCENE("<default name='a' value='1'/><shape type='sphere'><bsdf type='blendbsdf'><float name='weight' "
+              "value='$a'/>" GRAY(".1") GRAY(".2") "</bsdf></shape><emitter type='point'/>");
     for (size_t n = 0; n < strlen(text); ++n)
         ck_assert_int_eq(lc_scene_read_memory(&d, text, n, "t.xml", NULL, 0, &err), LC_BAD_INPUT);
 }
