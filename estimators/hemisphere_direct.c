@@ -22,7 +22,8 @@ static lc_rgb direct(const lc_scene *scene, const lc_hit *hit, lc_sampler *sampl
     return lc_rgb_scale(cos_surface / pdf_solid, lc_rgb_mul(f, lc_emission(scene, &next)));
 }
 
-static lc_rgb radiance(const lc_scene *scene, const lc_ray *ray, const lc_hit *hit, const lc_options *options, lc_sampler *sampler)
+static lc_rgb radiance(const lc_scene *scene, const lc_ray *ray, const lc_hit *hit, const lc_options *options,
+                       lc_sampler *sampler)
 {
     (void)ray;
     lc_rgb sum = lc_black();

@@ -6,9 +6,9 @@
 
 #include <stddef.h>
 
-#define ESTIMATORS(X)    \
+#define ESTIMATORS(X) \
     X(hemisphere_direct) \
-    X(light_direct)      \
+    X(light_direct) \
     X(three_point)
 
 #define DECLARE(id) extern const lc_estimator lc_estimator_##id;

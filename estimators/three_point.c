@@ -31,7 +31,8 @@ static lc_rgb direct(const lc_scene *scene, const lc_hit *hit, lc_sampler *sampl
     return lc_rgb_scale(g / light.pdf_area, lc_rgb_mul(lc_bsdf_eval(scene, hit, light.wi), light.radiance));
 }
 
-static lc_rgb radiance(const lc_scene *scene, const lc_ray *ray, const lc_hit *hit, const lc_options *options, lc_sampler *sampler)
+static lc_rgb radiance(const lc_scene *scene, const lc_ray *ray, const lc_hit *hit, const lc_options *options,
+                       lc_sampler *sampler)
 {
     (void)ray;
     lc_rgb sum = lc_black();

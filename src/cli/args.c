@@ -43,7 +43,8 @@ static void print_help(const lc_command *command, const lc_option *options)
     printf("\n");
     for (const lc_option *o = options; o->name; ++o) {
         char left[64];
-        int n = o->letter ? snprintf(left, sizeof left, "  -%c, --%s", o->letter, o->name) : snprintf(left, sizeof left, "      --%s", o->name);
+        int n = o->letter ? snprintf(left, sizeof left, "  -%c, --%s", o->letter, o->name)
+                          : snprintf(left, sizeof left, "      --%s", o->name);
         if (o->value)
             snprintf(left + n, sizeof left - (size_t)n, " %s", o->value);
         printf("%-30s %s\n", left, o->help);
@@ -71,8 +72,12 @@ static lc_args_result store(const lc_command *command, const lc_option *o, const
     char *end, expected[96];
     errno = 0;
     switch (o->kind) {
-    case LC_OPT_FLAG: *(int *)o->target = 1; break;
-    case LC_OPT_STRING: *(const char **)o->target = value; break;
+    case LC_OPT_FLAG:
+        *(int *)o->target = 1;
+        break;
+    case LC_OPT_STRING:
+        *(const char **)o->target = value;
+        break;
     case LC_OPT_LIST:
         if (!append(o->target, value)) {
             lc_complain(command, LC_FAULT, "out of memory");
@@ -121,7 +126,8 @@ static const lc_option *find(const lc_option *options, const char *arg, const ch
     *value = NULL;
     for (const lc_option *o = options; o->name; ++o) {
         size_t length = strlen(o->name);
-        if (arg[1] == '-' && strncmp(arg + 2, o->name, length) == 0 && (arg[2 + length] == 0 || arg[2 + length] == '=')) {
+        if (arg[1] == '-' && strncmp(arg + 2, o->name, length) == 0 &&
+            (arg[2 + length] == 0 || arg[2 + length] == '=')) {
             *value = arg[2 + length] ? arg + 3 + length : NULL;
             return o;
         }
@@ -156,7 +162,8 @@ static lc_args_result read_option(const lc_command *command, const lc_option *op
     return store(command, o, value);
 }
 
-lc_args_result lc_args_read(const lc_command *command, const lc_option *options, int argc, char **argv, lc_strings *rest)
+lc_args_result lc_args_read(const lc_command *command, const lc_option *options, int argc, char **argv,
+                            lc_strings *rest)
 {
     rest->items = NULL;
     rest->count = 0;

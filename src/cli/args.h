@@ -36,13 +36,15 @@ typedef struct lc_option {
 typedef struct lc_command {
     const char *name, *synopsis, *summary;
     const char *details; /* more lines for --help; may be NULL */
-    int (*run)(const struct lc_command *self, int argc, char **argv); /* argv[0] is the command's name; returns the exit code */
+    int (*run)(const struct lc_command *self, int argc,
+               char **argv); /* argv[0] is the command's name; returns the exit code */
 } lc_command;
 
 /* Reads argv[1..]; what is no option goes to `rest` (the strings are argv's, the array goes back by lc_strings_release).
  * `options` ends with name = NULL. HELP: it was asked for and is printed; BAD: the message is printed. */
 typedef enum lc_args_result { LC_ARGS_OK, LC_ARGS_HELP, LC_ARGS_BAD } lc_args_result;
-lc_args_result lc_args_read(const lc_command *command, const lc_option *options, int argc, char **argv, lc_strings *rest);
+lc_args_result lc_args_read(const lc_command *command, const lc_option *options, int argc, char **argv,
+                            lc_strings *rest);
 void lc_strings_release(lc_strings *strings);
 
 /* Prints "lightcheck COMMAND: message" to stderr and returns `status`. */

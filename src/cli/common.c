@@ -8,7 +8,7 @@
 #include "estimators/registry.h"
 #include "io/scene_path.h"
 #include "io/scene_read.h"
-#include "verify/mutants/mutants.h"
+#include "verify/mutants/registry.h"
 
 static size_t list_names(char *text, size_t size, const lc_estimator *const *estimators)
 {
@@ -32,7 +32,8 @@ lc_status lc_cli_find_estimator(const lc_estimator **out, const char *name, lc_e
         }
     char list[512] = "";
     list_names(list, sizeof list, lc_estimators);
-    return lc_fail(err, LC_BAD_INPUT, "unknown estimator '%s'; expected one of: %s (or a mutant: `lightcheck list mutants`)", name, list);
+    return lc_fail(err, LC_BAD_INPUT,
+                   "unknown estimator '%s'; expected one of: %s (or a mutant: `lightcheck list mutants`)", name, list);
 }
 
 /* "NAME=VALUE" -> an override; `names` owns the name. */
@@ -96,7 +97,8 @@ lc_status lc_cli_read_pair(int *a, int *b, const char *text, char separator, con
 lc_status lc_cli_bounces(int *out, int asked, const lc_scene *scene, const lc_estimator *estimator, lc_error *err)
 {
     if (asked > estimator->max_bounces)
-        return lc_fail(err, LC_BAD_INPUT, "--bounces %d: %s does at most %d", asked, estimator->name, estimator->max_bounces);
+        return lc_fail(err, LC_BAD_INPUT, "--bounces %d: %s does at most %d", asked, estimator->name,
+                       estimator->max_bounces);
     int given = lc_scene_description(scene)->max_bounces;
     int bounces = asked >= 0 ? asked : given >= 0 ? given : LC_DEFAULT_BOUNCES;
     *out = bounces < estimator->max_bounces ? bounces : estimator->max_bounces;
@@ -111,6 +113,7 @@ void lc_cli_progress(void *user, double done)
     if (!lc_cli_has_terminal())
         return;
     int filled = (int)(done * 40);
-    fprintf(stderr, "\r[%-40.*s] %3.0f%%%s", filled, "########################################", 100 * done, done >= 1 ? "\r\033[K" : "");
+    fprintf(stderr, "\r[%-40.*s] %3.0f%%%s", filled, "########################################", 100 * done,
+            done >= 1 ? "\r\033[K" : "");
     fflush(stderr);
 }

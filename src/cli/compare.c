@@ -18,7 +18,9 @@ static lc_status read_image(lc_film **out, const char *path, lc_error *err)
     if (known == 0) {
         lc_film_free(*out);
         *out = NULL;
-        return lc_fail(err, LC_BAD_INPUT, "%s: no channels `variance.R/G/B` and `samples`: without its own error an image cannot be judged", path);
+        return lc_fail(
+            err, LC_BAD_INPUT,
+            "%s: no channels `variance.R/G/B` and `samples`: without its own error an image cannot be judged", path);
     }
     return LC_OK;
 }
@@ -32,8 +34,8 @@ static lc_status compare(const char *path_a, const char *path_b, double margin, 
     if (status == LC_OK)
         status = read_image(&b, path_b, err);
     if (status == LC_OK && (a->width != b->width || a->height != b->height))
-        status = lc_fail(err, LC_BAD_INPUT, "%s is %d x %d pixels, %s is %d x %d: expected the same size", path_a, a->width, a->height, path_b, b->width,
-                         b->height);
+        status = lc_fail(err, LC_BAD_INPUT, "%s is %d x %d pixels, %s is %d x %d: expected the same size", path_a,
+                         a->width, a->height, path_b, b->width, b->height);
     if (status == LC_OK)
         status = lc_compare_films(&row, a, b, margin, 1e-6, 1e-6, err);
     lc_film_free(a);
@@ -76,8 +78,10 @@ const lc_command lc_command_compare = {
     "compare",
     "A.exr B.exr [--margin M]",
     "shows whether two renders have the same mean",
-    "Both must come with their errors (channels variance.R/G/B and samples) and from different streams: other estimators\n"
-    "or other seeds. PASS (0): shown equal within the margin; FAIL (1): shown different, at any scale from pixel to image, at an\n"
+    "Both must come with their errors (channels variance.R/G/B and samples) and from different streams: other "
+    "estimators\n"
+    "or other seeds. PASS (0): shown equal within the margin; FAIL (1): shown different, at any scale from pixel to "
+    "image, at an\n"
     "error probability of 1e-6; UNDECIDED (3): neither.\n",
     run,
 };

@@ -8,7 +8,7 @@
 #include "estimators/registry.h"
 #include "io/scene_path.h"
 #include "verify/checks/checks.h"
-#include "verify/mutants/mutants.h"
+#include "verify/mutants/registry.h"
 
 /* One item of a list; `detail` is what --json adds under "source". */
 typedef void item_fn(json_t *array, const char *name, const char *summary, const char *source);
@@ -67,7 +67,8 @@ static lc_status list_scenes(item_fn *item, json_t *array, lc_error *err)
 static int run(const lc_command *self, int argc, char **argv)
 {
     int json = 0, status = LC_OK;
-    const lc_option options[] = {{0, "json", LC_OPT_FLAG, &json, NULL, "as a JSON array", 0, 0, NULL}, {0, NULL, LC_OPT_FLAG, NULL, NULL, NULL, 0, 0, NULL}};
+    const lc_option options[] = {{0, "json", LC_OPT_FLAG, &json, NULL, "as a JSON array", 0, 0, NULL},
+                                 {0, NULL, LC_OPT_FLAG, NULL, NULL, NULL, 0, 0, NULL}};
     lc_strings rest;
     lc_error err;
     lc_args_result read = lc_args_read(self, options, argc, argv, &rest);

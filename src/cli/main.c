@@ -8,13 +8,15 @@
 #include "cli/commands.h"
 
 static const lc_command *const commands[] = {
-    &lc_command_list, &lc_command_render, &lc_command_sample, &lc_command_compare, &lc_command_merge, &lc_command_verify,
+    &lc_command_list,    &lc_command_render, &lc_command_sample,
+    &lc_command_compare, &lc_command_merge,  &lc_command_verify,
 };
 enum { COUNT = sizeof commands / sizeof commands[0] };
 
 static void print_usage(FILE *out)
 {
-    fprintf(out, "usage: lightcheck COMMAND ...\n\nProves, or disproves, that a light-transport estimator is right.\n\n");
+    fprintf(out,
+            "usage: lightcheck COMMAND ...\n\nProves, or disproves, that a light-transport estimator is right.\n\n");
     for (int i = 0; i < COUNT; ++i)
         fprintf(out, "  %-10s %s\n", commands[i]->name, commands[i]->summary);
     fprintf(out, "\n`lightcheck COMMAND --help` explains one. Exit status: 0 all verified, 1 something shown wrong,\n"

@@ -55,7 +55,8 @@ const lc_command lc_command_merge = {
     "merge",
     "A.exr B.exr ... -o OUT.exr",
     "puts shards together, or renders of different seeds",
-    "Shards of one render are pasted, bit for bit what one run gives. Renders of different seeds are averaged, weighted by\n"
+    "Shards of one render are pasted, bit for bit what one run gives. Renders of different seeds are averaged, "
+    "weighted by\n"
     "their samples. Images that share samples are refused.\n",
     run,
 };

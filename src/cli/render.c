@@ -32,9 +32,9 @@ static void print_summary(const lc_film *film, const char *path)
     for (size_t i = 0; i < count; ++i)
         for (int c = 0; c < 3; ++c)
             mean[c] += film->pixels[i].c[c].mean / (double)count;
-    printf("%s: %s by %s, bounces %d to %d, %dx%d, %llu samples a pixel, seed %llu, mean (%.6g, %.6g, %.6g)\n", path, film->scene, film->estimator,
-           film->min_bounces, film->max_bounces, film->width, film->height, (unsigned long long)film->count, (unsigned long long)film->seed, mean[0],
-           mean[1], mean[2]);
+    printf("%s: %s by %s, bounces %d to %d, %dx%d, %llu samples a pixel, seed %llu, mean (%.6g, %.6g, %.6g)\n", path,
+           film->scene, film->estimator, film->min_bounces, film->max_bounces, film->width, film->height,
+           (unsigned long long)film->count, (unsigned long long)film->seed, mean[0], mean[1], mean[2]);
 }
 
 /* "x.exr", 2 -> "x.2.exr" */
@@ -45,8 +45,8 @@ static void name_of_bounce(char *out, size_t size, const char *path, int bounce)
     snprintf(out, size, "%.*s.%d%s", stem, path, bounce, dot ? dot : "");
 }
 
-static lc_status render_one(const lc_scene *scene, const lc_estimator *estimator, const lc_render_options *options, int width, int height,
-                            const char *path, double exposure, lc_error *err)
+static lc_status render_one(const lc_scene *scene, const lc_estimator *estimator, const lc_render_options *options,
+                            int width, int height, const char *path, double exposure, lc_error *err)
 {
     lc_film *film;
     lc_status status = lc_film_create(&film, width, height, err);
@@ -59,11 +59,12 @@ static lc_status render_one(const lc_scene *scene, const lc_estimator *estimator
         print_summary(film, path);
     if (status == LC_OK && film->bad)
         status = lc_fail(err, LC_WRONG,
-                         "%s: %llu samples are NaN, infinite or negative (written as 0), the first (%g, %g, %g) at pixel %d,%d; see it with "
+                         "%s: %llu samples are NaN, infinite or negative (written as 0), the first (%g, %g, %g) at "
+                         "pixel %d,%d; see it with "
                          "`lightcheck sample %s -e %s --pixel %d,%d --index %llu --seed %llu`",
-                         path, (unsigned long long)film->bad, film->bad_value[0], film->bad_value[1], film->bad_value[2], film->bad_x, film->bad_y,
-                         film->scene, film->estimator, film->bad_x, film->bad_y, (unsigned long long)film->bad_sample,
-                         (unsigned long long)film->seed);
+                         path, (unsigned long long)film->bad, film->bad_value[0], film->bad_value[1],
+                         film->bad_value[2], film->bad_x, film->bad_y, film->scene, film->estimator, film->bad_x,
+                         film->bad_y, (unsigned long long)film->bad_sample, (unsigned long long)film->seed);
     lc_film_free(film);
     return status;
 }
@@ -115,16 +116,21 @@ static int run(const lc_command *self, int argc, char **argv)
 {
     render_arguments a = {.bounces = -1, .seed = LC_DEFAULT_SEED};
     const lc_option options[] = {
-        {'e', "estimator", LC_OPT_STRING, &a.estimator, "NAME", "estimator (see `lightcheck list estimators`)", 0, 0, NULL},
+        {'e', "estimator", LC_OPT_STRING, &a.estimator, "NAME", "estimator (see `lightcheck list estimators`)", 0, 0,
+         NULL},
         {'s', "samples", LC_OPT_INT, &a.samples, "SPP", "samples a pixel; default: the scene's", 1, 2e9, NULL},
-        {0, "bounces", LC_OPT_INT, &a.bounces, "N", "scattering events at most; default: the scene's, else 5", 0, LC_UNBOUNDED, NULL},
-        {0, "by-bounce", LC_OPT_FLAG, &a.by_bounce, NULL, "one image for each number of bounces: OUT.0.exr, OUT.1.exr, ...", 0, 0, NULL},
+        {0, "bounces", LC_OPT_INT, &a.bounces, "N", "scattering events at most; default: the scene's, else 5", 0,
+         LC_UNBOUNDED, NULL},
+        {0, "by-bounce", LC_OPT_FLAG, &a.by_bounce, NULL,
+         "one image for each number of bounces: OUT.0.exr, OUT.1.exr, ...", 0, 0, NULL},
         {0, "size", LC_OPT_STRING, &a.size, "WxH", "pixels; default: the scene's", 0, 0, NULL},
-        {'o', "out", LC_OPT_STRING, &a.out, "FILE", "image.exr (means, variances, samples) or image.png; default SCENE.NAME.exr", 0, 0, NULL},
+        {'o', "out", LC_OPT_STRING, &a.out, "FILE",
+         "image.exr (means, variances, samples) or image.png; default SCENE.NAME.exr", 0, 0, NULL},
         {0, "exposure", LC_OPT_NUMBER, &a.exposure, "STOPS", "of a .png; default 0", -100, 100, NULL},
         {0, "seed", LC_OPT_UINT64, &a.seed, "N", "default 1; the same seed gives the same bits", 0, 0, NULL},
         {0, "threads", LC_OPT_INT, &a.threads, "N", "default: one a core; changes only the time", 1, 256, NULL},
-        {0, "shard", LC_OPT_STRING, &a.shard, "I/N", "only every N-th tile from the I-th; put together with `lightcheck merge`", 0, 0, NULL},
+        {0, "shard", LC_OPT_STRING, &a.shard, "I/N",
+         "only every N-th tile from the I-th; put together with `lightcheck merge`", 0, 0, NULL},
         {'D', "define", LC_OPT_LIST, &a.definitions, "NAME=VALUE", "value of a <default> of the scene", 0, 0, NULL},
         {0, NULL, LC_OPT_FLAG, NULL, NULL, NULL, 0, 0, NULL},
     };
@@ -135,7 +141,8 @@ static int run(const lc_command *self, int argc, char **argv)
     if (read == LC_ARGS_HELP)
         status = LC_OK;
     else if (read == LC_ARGS_OK && rest.count != 1)
-        status = lc_complain(self, LC_BAD_INPUT, "expected one scene: a name (see `lightcheck list scenes`) or a path to an .xml file");
+        status = lc_complain(self, LC_BAD_INPUT,
+                             "expected one scene: a name (see `lightcheck list scenes`) or a path to an .xml file");
     else if (read == LC_ARGS_OK) {
         status = (int)render(&a, rest.items[0], &err);
         if (status != LC_OK)

@@ -39,14 +39,16 @@ static lc_status replay(const sample_arguments *a, const char *scene_name, lc_er
     if (status == LC_OK && a->size)
         status = lc_cli_read_pair(&width, &height, a->size, 'x', "--size", err);
     if (status == LC_OK && (x >= width || y >= height))
-        status = lc_fail(err, LC_BAD_INPUT, "--pixel %s: the image is %d x %d, counted from 0", a->pixel, width, height);
+        status =
+            lc_fail(err, LC_BAD_INPUT, "--pixel %s: the image is %d x %d, counted from 0", a->pixel, width, height);
     if (status == LC_OK && a->index >= UINT32_MAX)
         status = lc_fail(err, LC_BAD_INPUT, "--index %llu: expected less than 2^32 - 1", (unsigned long long)a->index);
     if (status == LC_OK) {
         lc_trace_log log = {print_line, NULL};
         options.arm = lc_arm(estimator->name);
-        printf("sample %llu of pixel %d,%d of %s (%dx%d), %s, bounces 0 to %d, seed %llu\n", (unsigned long long)a->index, x, y,
-               lc_scene_description(scene)->name, width, height, estimator->name, options.max_bounces, (unsigned long long)a->seed);
+        printf("sample %llu of pixel %d,%d of %s (%dx%d), %s, bounces 0 to %d, seed %llu\n",
+               (unsigned long long)a->index, x, y, lc_scene_description(scene)->name, width, height, estimator->name,
+               options.max_bounces, (unsigned long long)a->seed);
         lc_rgb c = lc_replay(scene, estimator, &options, width, height, x, y, a->index, &log);
         printf("radiance (%.9g, %.9g, %.9g) W sr^-1 m^-2\n", c.r, c.g, c.b);
     }
@@ -57,7 +59,8 @@ static lc_status replay(const sample_arguments *a, const char *scene_name, lc_er
 /* The same command again, under gdb, stopped where the estimator begins. */
 static int debug(const lc_command *self, int argc, char **argv)
 {
-    const char *command[64] = {"gdb", "-q", "-ex", "break lc_replay_begin", "-ex", "run", "-ex", "finish", "--args", "/proc/self/exe"};
+    const char *command[64] = {"gdb", "-q",     "-ex",    "break lc_replay_begin", "-ex", "run",
+                               "-ex", "finish", "--args", "/proc/self/exe"};
     char exe[4096];
     int n = 10;
     ssize_t length = readlink("/proc/self/exe", exe, sizeof exe - 1);
@@ -77,7 +80,8 @@ static int run(const lc_command *self, int argc, char **argv)
 {
     sample_arguments a = {.bounces = -1, .seed = LC_DEFAULT_SEED};
     const lc_option options[] = {
-        {'e', "estimator", LC_OPT_STRING, &a.estimator, "NAME", "estimator (see `lightcheck list estimators`)", 0, 0, NULL},
+        {'e', "estimator", LC_OPT_STRING, &a.estimator, "NAME", "estimator (see `lightcheck list estimators`)", 0, 0,
+         NULL},
         {0, "pixel", LC_OPT_STRING, &a.pixel, "X,Y", "counted from 0,0, the upper left", 0, 0, NULL},
         {0, "index", LC_OPT_UINT64, &a.index, "K", "which sample of the pixel; default 0", 0, 0, NULL},
         {0, "seed", LC_OPT_UINT64, &a.seed, "N", "default 1", 0, 0, NULL},
@@ -94,7 +98,8 @@ static int run(const lc_command *self, int argc, char **argv)
     if (read == LC_ARGS_HELP)
         status = LC_OK;
     else if (read == LC_ARGS_OK && rest.count != 1)
-        status = lc_complain(self, LC_BAD_INPUT, "expected one scene: a name (see `lightcheck list scenes`) or a path to an .xml file");
+        status = lc_complain(self, LC_BAD_INPUT,
+                             "expected one scene: a name (see `lightcheck list scenes`) or a path to an .xml file");
     else if (read == LC_ARGS_OK && a.gdb)
         status = debug(self, argc, argv);
     else if (read == LC_ARGS_OK) {
@@ -108,5 +113,9 @@ static int run(const lc_command *self, int argc, char **argv)
 }
 
 const lc_command lc_command_sample = {
-    "sample", "SCENE -e NAME --pixel X,Y --index K [options]", "replays one sample and prints each draw, hit and value", NULL, run,
+    "sample",
+    "SCENE -e NAME --pixel X,Y --index K [options]",
+    "replays one sample and prints each draw, hit and value",
+    NULL,
+    run,
 };

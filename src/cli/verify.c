@@ -15,14 +15,17 @@ typedef struct verify_arguments {
     int threads;
 } verify_arguments;
 
-static lc_status load_scene(lc_scene **out, const char *name, lc_error *err) { return lc_cli_load_scene(out, name, NULL, err); }
+static lc_status load_scene(lc_scene **out, const char *name, lc_error *err)
+{
+    return lc_cli_load_scene(out, name, NULL, err);
+}
 
 static void show_row(void *user, const lc_row *row, int done, int count)
 {
     (void)user;
     if (lc_cli_has_terminal())
-        fprintf(stderr, "\r\033[K[%d/%d] %s %s %s: %s%s", done, count, row->check, row->scene, row->estimator, lc_row_verdict_name(row->verdict),
-                done == count ? "\r\033[K" : "");
+        fprintf(stderr, "\r\033[K[%d/%d] %s %s %s: %s%s", done, count, row->check, row->scene, row->estimator,
+                lc_row_verdict_name(row->verdict), done == count ? "\r\033[K" : "");
 }
 
 static lc_status read_seed(uint64_t *seed, const char *text, lc_error *err)
@@ -38,7 +41,8 @@ static lc_status read_seed(uint64_t *seed, const char *text, lc_error *err)
     errno = 0;
     unsigned long long number = strtoull(text, &end, 10);
     if (end == text || *end || errno || text[0] == '-')
-        return lc_fail(err, LC_BAD_INPUT, "--seed: '%s' is neither `random` nor a whole number from 0 to 2^64 - 1", text);
+        return lc_fail(err, LC_BAD_INPUT, "--seed: '%s' is neither `random` nor a whole number from 0 to 2^64 - 1",
+                       text);
     *seed = number;
     return LC_OK;
 }
@@ -59,7 +63,8 @@ static lc_status check_names(const verify_arguments *a, lc_error *err)
 }
 
 /* Writes one format, aside and renamed. */
-static lc_status write_format(const char *folder, const char *file, const lc_report *report, const char *format, lc_error *err)
+static lc_status write_format(const char *folder, const char *file, const lc_report *report, const char *format,
+                              lc_error *err)
 {
     char path[4096];
     lc_outfile *out;
@@ -133,12 +138,15 @@ static int run(const lc_command *self, int argc, char **argv)
 {
     verify_arguments a = {.suite = "quick", .seed = "1", .format = "text", .budget = 1e-6};
     const lc_option options[] = {
-        {0, "suite", LC_OPT_CHOICE, &a.suite, "quick|full", "margins 0.5% or 0.25% times max(1, c); default quick", 0, 0, "quick|full"},
+        {0, "suite", LC_OPT_CHOICE, &a.suite, "quick|full", "margins 0.5% or 0.25% times max(1, c); default quick", 0,
+         0, "quick|full"},
         {'e', "estimator", LC_OPT_STRING, &a.estimator, "NAME", "only this estimator, or a mutant", 0, 0, NULL},
         {'c', "check", LC_OPT_STRING, &a.check, "CHECK", "only this kind (see `lightcheck list checks`)", 0, 0, NULL},
         {0, "scene", LC_OPT_STRING, &a.scene, "SCENE", "only this scene of the suite", 0, 0, NULL},
-        {0, "margin", LC_OPT_NUMBER, &a.margin, "M", "relative, for estimators with c <= 1; default: the suite's", 0, 1, NULL},
-        {0, "budget", LC_OPT_NUMBER, &a.budget, "P", "probability of any false FAIL, and of any false PASS; default 1e-6", 0, 0.1, NULL},
+        {0, "margin", LC_OPT_NUMBER, &a.margin, "M", "relative, for estimators with c <= 1; default: the suite's", 0, 1,
+         NULL},
+        {0, "budget", LC_OPT_NUMBER, &a.budget, "P",
+         "probability of any false FAIL, and of any false PASS; default 1e-6", 0, 0.1, NULL},
         {0, "seed", LC_OPT_STRING, &a.seed, "N|random", "default 1; printed, and reproduces the run", 0, 0, NULL},
         {0, "threads", LC_OPT_INT, &a.threads, "N", "default: one a core; changes only the time", 1, 256, NULL},
         {0, "format", LC_OPT_CHOICE, &a.format, "text|json|junit", "default text", 0, 0, "text|json|junit"},
@@ -166,7 +174,8 @@ const lc_command lc_command_verify = {
     "verify",
     "[--suite quick|full] [-e NAME] [-c CHECK] [--scene SCENE] [options]",
     "puts estimators to the test",
-    "PASS: shown equal to what is expected, within the margin. FAIL: shown different. UNDECIDED: the samples ran out, which is no\n"
+    "PASS: shown equal to what is expected, within the margin. FAIL: shown different. UNDECIDED: the samples ran out, "
+    "which is no\n"
     "pass. Exit status: 0 all PASS, 1 any FAIL, 3 any UNDECIDED. c is a sample's standard deviation over the mean.\n",
     run,
 };

@@ -48,11 +48,11 @@ typedef struct query {
     struct RTCIntersectContext base;
 #endif
     const lc_accel *accel;
-    lc_vec3 o, d;     /* d unit */
-    double t_max;     /* of a segment */
-    int from, to;     /* round parts at its ends, or -1 */
-    int hit;          /* round part hit, */
-    double t;         /* and where */
+    lc_vec3 o, d; /* d unit */
+    double t_max; /* of a segment */
+    int from, to; /* round parts at its ends, or -1 */
+    int hit;      /* round part hit, */
+    double t;     /* and where */
 } query;
 
 /* Nearest t in (0, t_max) where the ray meets the round part, or -1. */
@@ -181,7 +181,8 @@ static void find_unit_space(lc_accel *accel, const lc_scene *scene)
     for (int r = 0; r < scene->round_count; ++r) {
         const lc_round *round = &scene->rounds[r];
         lc_vec3 e = round->is_sphere ? lc_vec(round->radius, round->radius, round->radius)
-                                     : lc_vec(hypot(round->eu.x, round->ev.x), hypot(round->eu.y, round->ev.y), hypot(round->eu.z, round->ev.z));
+                                     : lc_vec(hypot(round->eu.x, round->ev.x), hypot(round->eu.y, round->ev.y),
+                                              hypot(round->eu.z, round->ev.z));
         grow(lower, upper, lc_sub(round->o, e));
         grow(lower, upper, lc_add(round->o, e));
     }
@@ -203,7 +204,8 @@ static double face_offset(const lc_accel *accel, const lc_face *face)
 {
     lc_vec3 n = face->n, o = to_unit(accel, face->o);
     const double weight[3] = {fabs(n.x), fabs(n.y), fabs(n.z)}, at[3] = {fabs(o.x), fabs(o.y), fabs(o.z)};
-    const double extent[3] = {fabs(face->eu.x) + fabs(face->ev.x), fabs(face->eu.y) + fabs(face->ev.y), fabs(face->eu.z) + fabs(face->ev.z)};
+    const double extent[3] = {fabs(face->eu.x) + fabs(face->ev.x), fabs(face->eu.y) + fabs(face->ev.y),
+                              fabs(face->eu.z) + fabs(face->ev.z)};
     double sum = 0.0;
     for (int i = 0; i < 3; ++i)
         sum += weight[i] * (at[i] + 3 * accel->scale * extent[i]);
@@ -214,8 +216,10 @@ static void add_faces(lc_accel *accel, const lc_scene *scene)
 {
     RTCGeometry geometry = rtcNewGeometry(accel->device, RTC_GEOMETRY_TYPE_QUAD);
     size_t count = (size_t)scene->face_count;
-    accel->vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 4 * count);
-    accel->quads = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, 4 * sizeof(unsigned), count);
+    accel->vertices =
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 4 * count);
+    accel->quads =
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, 4 * sizeof(unsigned), count);
     for (size_t f = 0; accel->vertices && accel->quads && f < count; ++f) {
         accel->offsets[f] = face_offset(accel, &scene->faces[f]);
         for (unsigned i = 0; i < 4; ++i) {
@@ -369,11 +373,13 @@ static void finish_round(const lc_round *round, lc_vec3 o, lc_vec3 d, double t, 
     hit->shape = round->shape;
 }
 
-int lc_accel_intersect(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, lc_vec3 d, double time, int from_part, lc_vec3 from_n, lc_hit *hit)
+int lc_accel_intersect(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, lc_vec3 d, double time, int from_part,
+                       lc_vec3 from_n, lc_hit *hit)
 {
     lc_vec3 start = to_unit(accel, o);
     double skipped = 0.0, reach = lc_dot(start, start);
-    if (reach > 16.0 && from_part < 0) { /* a far camera: enter the ball of radius 4 in double, or float rounding would show */
+    if (reach > 16.0 &&
+        from_part < 0) { /* a far camera: enter the ball of radius 4 in double, or float rounding would show */
         double b = lc_dot(start, d), discriminant = b * b - reach + 16.0;
         if (b >= 0 || discriminant < 0)
             return 0;
@@ -407,8 +413,8 @@ int lc_accel_intersect(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, 
     return 0;
 }
 
-int lc_accel_occluded(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, int from_part, lc_vec3 from_n, lc_vec3 target, int to_part, lc_vec3 to_n,
-                      int to_infinity, double time)
+int lc_accel_occluded(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, int from_part, lc_vec3 from_n,
+                      lc_vec3 target, int to_part, lc_vec3 to_n, int to_infinity, double time)
 {
     (void)scene;
     query q;
@@ -424,8 +430,9 @@ int lc_accel_occluded(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, i
             return 0;
         start_query(&q, accel, a, lc_scale(1.0 / length, along), length, from_part, to_part);
         /* Embree reaches the end as o + d, each rounded: that, too, must stay on the near side of the light. */
-        double rounding = 2 * 0x1p-24 * (fabs(to_n.x) * (fabs(a.x) + fabs(along.x)) + fabs(to_n.y) * (fabs(a.y) + fabs(along.y)) +
-                                         fabs(to_n.z) * (fabs(a.z) + fabs(along.z)));
+        double rounding = 2 * 0x1p-24 *
+                          (fabs(to_n.x) * (fabs(a.x) + fabs(along.x)) + fabs(to_n.y) * (fabs(a.y) + fabs(along.y)) +
+                           fabs(to_n.z) * (fabs(a.z) + fabs(along.z)));
         lc_vec3 start = off_face(accel, a, from_part, from_n, along, 0.0);
         lc_vec3 end = off_face(accel, b, to_part, to_n, lc_neg(along), rounding);
         fill_ray(&ray, start, lc_sub(end, start), 1.0, time);

@@ -8,11 +8,16 @@ static double tan_half_fov_x(const lc_camera_desc *camera, double aspect)
 {
     double t = tan(camera->fov * (LC_PI / 360.0));
     switch (camera->fov_axis) {
-    case LC_FOV_X: return t;
-    case LC_FOV_Y: return t * aspect;
-    case LC_FOV_DIAGONAL: return t * aspect / sqrt(1.0 + aspect * aspect);
-    case LC_FOV_SMALLER: return aspect > 1.0 ? t * aspect : t;
-    case LC_FOV_LARGER: return aspect > 1.0 ? t : t * aspect;
+    case LC_FOV_X:
+        return t;
+    case LC_FOV_Y:
+        return t * aspect;
+    case LC_FOV_DIAGONAL:
+        return t * aspect / sqrt(1.0 + aspect * aspect);
+    case LC_FOV_SMALLER:
+        return aspect > 1.0 ? t * aspect : t;
+    case LC_FOV_LARGER:
+        return aspect > 1.0 ? t : t * aspect;
     }
     return t;
 }

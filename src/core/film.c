@@ -264,8 +264,9 @@ static lc_status check_same_render(const lc_film *a, const lc_film *b, lc_error 
                        b->shard, a->shards, LC_MAX_SHARDS);
     if (ra.seed != rb.seed || ra.arm != rb.arm || ra.first != rb.first || ra.count != rb.count || a->more_count ||
         b->more_count)
-        return lc_fail(err, LC_BAD_INPUT, "cannot merge shards of renders with different seeds or samples; "
-                                          "merge the shards of each render first");
+        return lc_fail(err, LC_BAD_INPUT,
+                       "cannot merge shards of renders with different seeds or samples; "
+                       "merge the shards of each render first");
     for (int i = 0; i < a->shards; ++i)
         if (has_shard(a, i) && has_shard(b, i))
             return lc_fail(err, LC_BAD_INPUT, "cannot merge: shard %d of %d is in both", i, a->shards);

@@ -46,15 +46,18 @@ static void sample_shape(const lc_scene *scene, int index, double u, double v, l
 static void log_light(const lc_scene *scene, const lc_light_sample *s)
 {
     if (s->is_delta)
-        lc_log(scene->log, "light: wi (%.9g, %.9g, %.9g), distance %.9g, irradiance (%.9g, %.9g, %.9g) W m^-2", s->wi.x, s->wi.y, s->wi.z, s->distance,
-               s->irradiance.r, s->irradiance.g, s->irradiance.b);
+        lc_log(scene->log, "light: wi (%.9g, %.9g, %.9g), distance %.9g, irradiance (%.9g, %.9g, %.9g) W m^-2", s->wi.x,
+               s->wi.y, s->wi.z, s->distance, s->irradiance.r, s->irradiance.g, s->irradiance.b);
     else
-        lc_log(scene->log, "light: shape of line %d at (%.9g, %.9g, %.9g), n (%.6g, %.6g, %.6g), distance %.9g, pdf_area %.9g, radiance (%.9g, %.9g, %.9g)",
-               scene->desc.shapes[s->shape].line, s->p.x, s->p.y, s->p.z, s->n.x, s->n.y, s->n.z, s->distance, s->pdf_area, s->radiance.r, s->radiance.g,
-               s->radiance.b);
+        lc_log(scene->log,
+               "light: shape of line %d at (%.9g, %.9g, %.9g), n (%.6g, %.6g, %.6g), distance %.9g, pdf_area %.9g, "
+               "radiance (%.9g, %.9g, %.9g)",
+               scene->desc.shapes[s->shape].line, s->p.x, s->p.y, s->p.z, s->n.x, s->n.y, s->n.z, s->distance,
+               s->pdf_area, s->radiance.r, s->radiance.g, s->radiance.b);
 }
 
-static void sample_area(const lc_scene *scene, int shape, double pdf_area, const lc_hit *hit, lc_sampler *sampler, lc_light_sample *out)
+static void sample_area(const lc_scene *scene, int shape, double pdf_area, const lc_hit *hit, lc_sampler *sampler,
+                        lc_light_sample *out)
 {
     double u = lc_next(sampler), v = lc_next(sampler);
     sample_shape(scene, shape, u, v, out);
@@ -119,8 +122,9 @@ int lc_light_sample_union(const lc_scene *scene, const lc_hit *hit, lc_sampler *
 int lc_visible(const lc_scene *scene, const lc_hit *hit, const lc_light_sample *light)
 {
     int to_infinity = isinf(light->distance);
-    int visible = hit->valid && !lc_accel_occluded(scene->accel, scene, hit->p, hit->part, hit->n, to_infinity ? light->wi : light->p, light->part,
-                                                   light->n, to_infinity, hit->time);
+    int visible = hit->valid &&
+                  !lc_accel_occluded(scene->accel, scene, hit->p, hit->part, hit->n, to_infinity ? light->wi : light->p,
+                                     light->part, light->n, to_infinity, hit->time);
     if (scene->log)
         lc_log(scene->log, "visible: %s", visible ? "yes" : "no");
     return visible;

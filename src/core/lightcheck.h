@@ -167,9 +167,9 @@ typedef struct lc_options {
 typedef lc_rgb lc_radiance_fn(const lc_scene *scene, const lc_ray *ray, const lc_hit *hit, const lc_options *options,
                               lc_sampler *sampler);
 
-enum { LC_DIFFUSE = 1, LC_MIRROR = 2, LC_GLASS = 4 };                /* lobes an estimator follows */
+enum { LC_DIFFUSE = 1, LC_MIRROR = 2, LC_GLASS = 4 };               /* lobes an estimator follows */
 enum { LC_AREA = 1, LC_POINT = 2, LC_DIRECTIONAL = 4, LC_SKY = 8 }; /* emitters it can reach */
-enum { LC_UNBOUNDED = 1 << 20 };                                     /* max_bounces of an estimator without a limit */
+enum { LC_UNBOUNDED = 1 << 20 };                                    /* max_bounces of an estimator without a limit */
 
 typedef struct lc_estimator {
     int abi;                  /* LC_ABI */

@@ -31,8 +31,8 @@ static int is_bad(lc_rgb c)
     return !(c.r >= 0 && c.g >= 0 && c.b >= 0 && c.r < INFINITY && c.g < INFINITY && c.b < INFINITY);
 }
 
-static lc_rgb one_sample(const lc_scene *scene, const lc_estimator *estimator, const lc_options *bounces, lc_sampler *sampler, int width, int height,
-                         int x, int y)
+static lc_rgb one_sample(const lc_scene *scene, const lc_estimator *estimator, const lc_options *bounces,
+                         lc_sampler *sampler, int width, int height, int x, int y)
 {
     lc_hit hit;
     double dx = lc_next(sampler), dy = lc_next(sampler);
@@ -128,29 +128,35 @@ static void *work_in_thread(void *argument)
     return NULL;
 }
 
-static lc_status check_options(const lc_film *film, const lc_scene *scene, const lc_estimator *estimator, const lc_render_options *o, lc_error *err)
+static lc_status check_options(const lc_film *film, const lc_scene *scene, const lc_estimator *estimator,
+                               const lc_render_options *o, lc_error *err)
 {
     const char *scene_name = scene->desc.name;
     if (estimator->abi != LC_ABI)
-        return lc_fail(err, LC_BAD_INPUT, "%s: written for interface %d, this program has %d", estimator->name, estimator->abi, LC_ABI);
+        return lc_fail(err, LC_BAD_INPUT, "%s: written for interface %d, this program has %d", estimator->name,
+                       estimator->abi, LC_ABI);
     if (o->min_bounces < 0 || o->max_bounces < o->min_bounces || o->max_bounces > estimator->max_bounces)
-        return lc_fail(err, LC_BAD_INPUT, "%s: bounces %d to %d, expected 0 to %d", estimator->name, o->min_bounces, o->max_bounces,
-                       estimator->max_bounces);
+        return lc_fail(err, LC_BAD_INPUT, "%s: bounces %d to %d, expected 0 to %d", estimator->name, o->min_bounces,
+                       o->max_bounces, estimator->max_bounces);
     if (o->count < 1 || o->first > UINT32_MAX || o->count > UINT32_MAX || o->first + o->count > UINT32_MAX)
-        return lc_fail(err, LC_BAD_INPUT, "%s: samples %llu to %llu of a pixel, expected at least one and at most 2^32 - 1", scene_name,
+        return lc_fail(err, LC_BAD_INPUT,
+                       "%s: samples %llu to %llu of a pixel, expected at least one and at most 2^32 - 1", scene_name,
                        (unsigned long long)o->first, (unsigned long long)(o->first + o->count));
     if (o->shards > 1 && (o->shard < 0 || o->shard >= o->shards))
-        return lc_fail(err, LC_BAD_INPUT, "%s: shard %d of %d, expected 0 to %d", scene_name, o->shard, o->shards, o->shards - 1);
+        return lc_fail(err, LC_BAD_INPUT, "%s: shard %d of %d, expected 0 to %d", scene_name, o->shard, o->shards,
+                       o->shards - 1);
     if (film->count == 0)
         return LC_OK;
-    if (film->seed != o->seed || film->arm != o->arm || film->first + film->count != o->first || film->min_bounces != o->min_bounces ||
-        film->max_bounces != o->max_bounces || strcmp(film->scene, scene_name) != 0 || strcmp(film->estimator, estimator->name) != 0 ||
+    if (film->seed != o->seed || film->arm != o->arm || film->first + film->count != o->first ||
+        film->min_bounces != o->min_bounces || film->max_bounces != o->max_bounces ||
+        strcmp(film->scene, scene_name) != 0 || strcmp(film->estimator, estimator->name) != 0 ||
         film->shards != (o->shards > 1 ? o->shards : 1))
         return lc_fail(err, LC_FAULT, "%s: a film grows only by the next samples of its own stream", scene_name);
     return LC_OK;
 }
 
-lc_status lc_render(lc_film *film, const lc_scene *scene, const lc_estimator *estimator, const lc_render_options *options, lc_error *err)
+lc_status lc_render(lc_film *film, const lc_scene *scene, const lc_estimator *estimator,
+                    const lc_render_options *options, lc_error *err)
 {
     lc_status status = check_options(film, scene, estimator, options, err);
     if (status != LC_OK)
@@ -160,7 +166,8 @@ lc_status lc_render(lc_film *film, const lc_scene *scene, const lc_estimator *es
         o.shard = 0;
         o.shards = 1;
     }
-    job j = {film, scene, estimator, &o, (film->width + LC_TILE - 1) / LC_TILE, 0, PTHREAD_MUTEX_INITIALIZER, o.shard, 0};
+    job j = {film,    scene, estimator, &o, (film->width + LC_TILE - 1) / LC_TILE, 0, PTHREAD_MUTEX_INITIALIZER,
+             o.shard, 0};
     j.tiles = j.tiles_x * ((film->height + LC_TILE - 1) / LC_TILE);
 
     long cores = o.threads > 0 ? o.threads : sysconf(_SC_NPROCESSORS_ONLN);
@@ -191,8 +198,8 @@ lc_status lc_render(lc_film *film, const lc_scene *scene, const lc_estimator *es
 /* Where `lightcheck sample --gdb` stops: everything is set up, the estimator comes next. */
 void lc_replay_begin(void) {}
 
-lc_rgb lc_replay(lc_scene *scene, const lc_estimator *estimator, const lc_render_options *options, int width, int height, int x, int y,
-                 uint64_t sample, const lc_trace_log *log)
+lc_rgb lc_replay(lc_scene *scene, const lc_estimator *estimator, const lc_render_options *options, int width,
+                 int height, int x, int y, uint64_t sample, const lc_trace_log *log)
 {
     lc_options bounces = {options->min_bounces, options->max_bounces};
     lc_sampler sampler;

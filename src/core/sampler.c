@@ -29,10 +29,7 @@ void lc_sampler_start(lc_sampler *sampler, uint64_t seed, uint32_t arm, uint32_t
     sampler->log = NULL;
 }
 
-void lc_sampler_seek(lc_sampler *sampler, uint32_t dimension)
-{
-    sampler->dimension = dimension;
-}
+void lc_sampler_seek(lc_sampler *sampler, uint32_t dimension) { sampler->dimension = dimension; }
 
 double lc_next(lc_sampler *sampler)
 {

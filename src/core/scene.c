@@ -20,7 +20,10 @@ static int finite_affine(const lc_affine *a)
 
 static int is_black(lc_rgb c) { return c.r == 0 && c.g == 0 && c.b == 0; }
 
-static int texture_is_black(const lc_texture *t) { return is_black(t->color[0]) && (!t->is_checkerboard || is_black(t->color[1])); }
+static int texture_is_black(const lc_texture *t)
+{
+    return is_black(t->color[0]) && (!t->is_checkerboard || is_black(t->color[1]));
+}
 
 /* A normal goes by the inverse transpose: for det < 0 it points to the other side of eu x ev. */
 static lc_vec3 face_normal(const lc_affine *to_world, lc_vec3 eu, lc_vec3 ev, int flip)
@@ -144,9 +147,11 @@ static void find_lobes(lc_scene *scene)
 static lc_status check_description(const lc_scene_desc *desc, lc_error *err)
 {
     if (desc->width < 1 || desc->height < 1 || desc->width > LC_MAX_SIZE || desc->height > LC_MAX_SIZE)
-        return lc_fail(err, LC_BAD_INPUT, "%s: image of %d x %d pixels, expected 1 to %d each", desc->name, desc->width, desc->height, LC_MAX_SIZE);
+        return lc_fail(err, LC_BAD_INPUT, "%s: image of %d x %d pixels, expected 1 to %d each", desc->name, desc->width,
+                       desc->height, LC_MAX_SIZE);
     if (!finite_affine(&desc->camera.to_world) || !(desc->camera.fov > 0 && desc->camera.fov < 180))
-        return lc_fail(err, LC_BAD_INPUT, "%s: the camera's to_world must be finite and its fov between 0 and 180", desc->name);
+        return lc_fail(err, LC_BAD_INPUT, "%s: the camera's to_world must be finite and its fov between 0 and 180",
+                       desc->name);
     for (int i = 0; i < desc->shape_count; ++i) {
         const lc_shape_desc *shape = &desc->shapes[i];
         if (!finite_affine(&shape->to_world) || lc_affine_determinant(&shape->to_world) == 0)
@@ -209,4 +214,7 @@ void lc_scene_free(lc_scene *scene)
 const lc_scene_desc *lc_scene_description(const lc_scene *scene) { return &scene->desc; }
 unsigned lc_scene_lobes(const lc_scene *scene) { return scene->lobes; }
 unsigned lc_scene_emitters(const lc_scene *scene) { return scene->emitters; }
-double lc_scene_emitting_area(const lc_scene *scene) { return scene->light_count ? scene->area_to[scene->light_count - 1] : 0.0; }
+double lc_scene_emitting_area(const lc_scene *scene)
+{
+    return scene->light_count ? scene->area_to[scene->light_count - 1] : 0.0;
+}

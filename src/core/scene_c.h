@@ -10,9 +10,9 @@
 /* A parallelogram o + u eu + v ev, |u|, |v| <= 1: a rectangle, or one side of a cube. */
 typedef struct lc_face {
     lc_vec3 o, eu, ev;
-    lc_vec3 n;       /* unit, flips applied */
-    lc_vec3 du, dv;  /* dual of eu, ev: u = du . (p - o) */
-    double area;     /* m^2 */
+    lc_vec3 n;      /* unit, flips applied */
+    lc_vec3 du, dv; /* dual of eu, ev: u = du . (p - o) */
+    double area;    /* m^2 */
     int shape;
 } lc_face;
 
@@ -47,7 +47,7 @@ struct lc_scene {
     int face_count, round_count;
     lc_light *lights;
     int light_count;
-    double *area_to;    /* emitting area of lights 0..i: area_to[light_count - 1] is the total */
+    double *area_to; /* emitting area of lights 0..i: area_to[light_count - 1] is the total */
     struct lc_accel *accel;
     unsigned lobes, emitters;
     const lc_trace_log *log; /* NULL but in a replay */
@@ -58,10 +58,11 @@ typedef struct lc_accel lc_accel;
 lc_status lc_accel_build(lc_accel **out, const lc_scene *scene, lc_error *err);
 void lc_accel_free(lc_accel *accel);
 /* The first hit from `o` along unit `d`; `from_part` is the part it starts on, with normal `from_n`, or -1. Fills p, n, distance, shape, part. */
-int lc_accel_intersect(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, lc_vec3 d, double time, int from_part, lc_vec3 from_n, lc_hit *hit);
+int lc_accel_intersect(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, lc_vec3 d, double time, int from_part,
+                       lc_vec3 from_n, lc_hit *hit);
 /* Whether something lies strictly between `o` and `q` (q on part `to_part` with normal to_n, or -1), or along unit `q` to infinity. */
-int lc_accel_occluded(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, int from_part, lc_vec3 from_n, lc_vec3 q, int to_part, lc_vec3 to_n,
-                      int to_infinity, double time);
+int lc_accel_occluded(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, int from_part, lc_vec3 from_n, lc_vec3 q,
+                      int to_part, lc_vec3 to_n, int to_infinity, double time);
 
 /* warp.c */
 void lc_tangents(lc_vec3 n, lc_vec3 *s, lc_vec3 *t);

@@ -26,8 +26,9 @@ static const char *shape_kind_name(const lc_scene *scene, int shape)
 static void log_hit(const lc_scene *scene, const char *what, const lc_hit *hit)
 {
     if (hit->valid)
-        lc_log(scene->log, "%s: %s of line %d at (%.9g, %.9g, %.9g), distance %.9g, n (%.6g, %.6g, %.6g)", what, shape_kind_name(scene, hit->shape),
-               scene->desc.shapes[hit->shape].line, hit->p.x, hit->p.y, hit->p.z, hit->distance, hit->n.x, hit->n.y, hit->n.z);
+        lc_log(scene->log, "%s: %s of line %d at (%.9g, %.9g, %.9g), distance %.9g, n (%.6g, %.6g, %.6g)", what,
+               shape_kind_name(scene, hit->shape), scene->desc.shapes[hit->shape].line, hit->p.x, hit->p.y, hit->p.z,
+               hit->distance, hit->n.x, hit->n.y, hit->n.z);
     else
         lc_log(scene->log, "%s: nothing", what);
 }
@@ -45,7 +46,8 @@ int lc_trace(const lc_scene *scene, const lc_hit *from, lc_vec3 wi, lc_hit *next
 {
     lc_hit hit = *from;
     hit.wo = lc_neg(wi);
-    hit.valid = from->valid && lc_accel_intersect(scene->accel, scene, from->p, wi, from->time, from->part, from->n, &hit);
+    hit.valid =
+        from->valid && lc_accel_intersect(scene->accel, scene, from->p, wi, from->time, from->part, from->n, &hit);
     if (scene->log)
         log_hit(scene, "ray hits", &hit);
     *next = hit;
@@ -109,8 +111,9 @@ lc_material lc_material_at(const lc_scene *scene, const lc_hit *hit)
     if (side->glass > 0)
         material.ior = is_front(hit) ? desc->int_ior / desc->ext_ior : desc->ext_ior / desc->int_ior;
     if (scene->log)
-        lc_log(scene->log, "material: diffuse (%.6g, %.6g, %.6g), mirror (%.6g, %.6g, %.6g), glass %.6g, ior %.6g", material.diffuse.r,
-               material.diffuse.g, material.diffuse.b, material.mirror.r, material.mirror.g, material.mirror.b, material.glass, material.ior);
+        lc_log(scene->log, "material: diffuse (%.6g, %.6g, %.6g), mirror (%.6g, %.6g, %.6g), glass %.6g, ior %.6g",
+               material.diffuse.r, material.diffuse.g, material.diffuse.b, material.mirror.r, material.mirror.g,
+               material.mirror.b, material.glass, material.ior);
     return material;
 }
 
@@ -119,7 +122,8 @@ lc_rgb lc_bsdf_eval(const lc_scene *scene, const lc_hit *hit, lc_vec3 wi)
     lc_rgb f = lc_black();
     if (hit->valid && lc_dot(hit->n, wi) * lc_dot(hit->n, hit->wo) > 0) {
         const lc_material_desc *desc = &scene->desc.materials[scene->desc.shapes[hit->shape].material];
-        f = lc_rgb_scale(LC_INV_PI, texture_on(scene, &desc->side[is_front(hit) ? 0 : 1].diffuse, hit->shape, hit->part, hit->p));
+        f = lc_rgb_scale(LC_INV_PI,
+                         texture_on(scene, &desc->side[is_front(hit) ? 0 : 1].diffuse, hit->shape, hit->part, hit->p));
     }
     if (scene->log)
         lc_log(scene->log, "bsdf: wi (%.9g, %.9g, %.9g), f (%.9g, %.9g, %.9g) 1/sr", wi.x, wi.y, wi.z, f.r, f.g, f.b);

@@ -20,7 +20,8 @@ static lc_vec3 around(lc_vec3 n, double cos_theta, double sin_theta, double phi)
     lc_vec3 s, t;
     lc_tangents(n, &s, &t);
     double x = sin_theta * cos(phi), y = sin_theta * sin(phi);
-    return lc_vec(x * s.x + y * t.x + cos_theta * n.x, x * s.y + y * t.y + cos_theta * n.y, x * s.z + y * t.z + cos_theta * n.z);
+    return lc_vec(x * s.x + y * t.x + cos_theta * n.x, x * s.y + y * t.y + cos_theta * n.y,
+                  x * s.z + y * t.z + cos_theta * n.z);
 }
 
 /* Archimedes: the height on the unit sphere is uniform. */

@@ -157,8 +157,7 @@ static exr_result_t put_pixels(exr_context_t exr, const lc_film *film, union sam
             exr_coding_channel_info_t *channel = &pipe.channels[i];
             channel->user_pixel_stride = sizeof *buffer;
             channel->user_line_stride = (int32_t)(width * sizeof *buffer);
-            channel->encode_from_ptr =
-                (const uint8_t *)(buffer + (size_t)channel_index(channel->channel_name) * plane);
+            channel->encode_from_ptr = (const uint8_t *)(buffer + (size_t)channel_index(channel->channel_name) * plane);
         }
         if (!result && y == 0)
             result = exr_encoding_choose_default_routines(exr, 0, &pipe);
@@ -215,7 +214,7 @@ lc_status lc_exr_write(const char *path, const lc_film *film, lc_error *err)
 /* The image as its header describes it. */
 struct image {
     int width, height;
-    int left, top;        /* of the data window */
+    int left, top; /* of the data window */
     int tiled;
     int block_w, block_h; /* largest part that is decoded at once */
     int has[CHANNELS];
@@ -340,9 +339,9 @@ static exr_result_t decode_block(exr_decode_pipeline_t *pipe, exr_const_context_
 {
     exr_chunk_info_t info;
     int first = x == 0 && y == 0;
-    exr_result_t result =
-        image->tiled ? exr_read_tile_chunk_info(exr, 0, x / image->block_w, y / image->block_h, 0, 0, &info)
-                     : exr_read_scanline_chunk_info(exr, 0, image->top + y, &info);
+    exr_result_t result = image->tiled
+                              ? exr_read_tile_chunk_info(exr, 0, x / image->block_w, y / image->block_h, 0, 0, &info)
+                              : exr_read_scanline_chunk_info(exr, 0, image->top + y, &info);
     if (!result && (info.width != w || info.height != h)) /* then it would not fit the buffer as planned */
         result = EXR_ERR_BAD_CHUNK_LEADER;
     if (!result)

@@ -11,9 +11,9 @@
 #include <string.h>
 
 #define NAME_VERSION "lightcheck.version"
-#define NAME_PASTED "lightcheck.pasted"       /* shards: "0 2 5" */
-#define NAME_MORE "lightcheck.more"           /* ranges: "seed arm first count seed arm ..." */
-#define NAME_BAD_PIXEL "lightcheck.badPixel"  /* these three only where bad > 0 */
+#define NAME_PASTED "lightcheck.pasted"      /* shards: "0 2 5" */
+#define NAME_MORE "lightcheck.more"          /* ranges: "seed arm first count seed arm ..." */
+#define NAME_BAD_PIXEL "lightcheck.badPixel" /* these three only where bad > 0 */
 #define NAME_BAD_SAMPLE "lightcheck.badSample"
 #define NAME_BAD_VALUE "lightcheck.badValue"
 
@@ -53,10 +53,14 @@ static exr_result_t put_field(exr_context_t exr, const struct field *field, cons
 {
     const void *value = (const char *)film + field->offset;
     switch (field->kind) {
-    case TEXT: return exr_attr_set_string(exr, 0, field->name, value);
-    case U64: return put_number(exr, field->name, *(const uint64_t *)value);
-    case U32: return put_number(exr, field->name, *(const uint32_t *)value);
-    case INT: break;
+    case TEXT:
+        return exr_attr_set_string(exr, 0, field->name, value);
+    case U64:
+        return put_number(exr, field->name, *(const uint64_t *)value);
+    case U32:
+        return put_number(exr, field->name, *(const uint32_t *)value);
+    case INT:
+        break;
     }
     return exr_attr_set_int(exr, 0, field->name, *(const int *)value);
 }
@@ -273,9 +277,10 @@ lc_status lc_exr_take_attributes(lc_film *film, exr_const_context_t exr, const c
         if (!take_field(exr, &fields[i], film))
             return lc_fail(err, LC_BAD_INPUT, damaged, path, fields[i].name);
     if (!is_sensible(film))
-        return lc_fail(err, LC_BAD_INPUT, "%s: bounces %d to %d, shard %d of %d, samples %" PRIu64 " from %" PRIu64
-                       ": expected ranges that make sense", path, film->min_bounces, film->max_bounces, film->shard,
-                       film->shards, film->count, film->first);
+        return lc_fail(err, LC_BAD_INPUT,
+                       "%s: bounces %d to %d, shard %d of %d, samples %" PRIu64 " from %" PRIu64
+                       ": expected ranges that make sense",
+                       path, film->min_bounces, film->max_bounces, film->shard, film->shards, film->count, film->first);
     if (has_attribute(exr, NAME_PASTED) && !take_pasted(exr, film))
         return lc_fail(err, LC_BAD_INPUT, damaged, path, NAME_PASTED);
     if (has_attribute(exr, NAME_MORE) && !take_more(exr, film))

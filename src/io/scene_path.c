@@ -42,7 +42,8 @@ lc_status lc_scene_names(char ***names, int *count, lc_error *err)
     *count = 0;
     DIR *folder = open_folder(path);
     if (!folder)
-        return lc_fail(err, LC_BAD_INPUT, "no folder scenes/ here or beside the program: give a path to an .xml file instead");
+        return lc_fail(err, LC_BAD_INPUT,
+                       "no folder scenes/ here or beside the program: give a path to an .xml file instead");
     for (struct dirent *entry = readdir(folder); entry; entry = readdir(folder)) {
         if (!ends_with(entry->d_name, ".xml"))
             continue;
@@ -97,12 +98,15 @@ lc_status lc_scene_locate(char path[LC_PATH_SIZE], const char *name, lc_error *e
         snprintf(path, LC_PATH_SIZE, "%s", name);
         return LC_OK;
     }
-    char folder_path[LC_PATH_SIZE];
-    DIR *folder = open_folder(folder_path);
-    if (folder)
-        closedir(folder);
-    int length = snprintf(path, LC_PATH_SIZE, "%s/%s.xml", folder_path, name);
-    if (!folder || length < 0 || length >= LC_PATH_SIZE || access(path, R_OK) != 0)
+    DIR *folder = open_folder(path);
+    if (!folder)
+        return unknown_scene(name, err);
+    closedir(folder);
+    size_t length = strlen(path);
+    if (length + strlen(name) + sizeof "/.xml" > LC_PATH_SIZE)
+        return unknown_scene(name, err);
+    snprintf(path + length, LC_PATH_SIZE - length, "/%s.xml", name);
+    if (access(path, R_OK) != 0)
         return unknown_scene(name, err);
     return LC_OK;
 }

@@ -9,7 +9,8 @@
 #include "verify/checks/checks.h"
 
 /* Light that arrives directly at the hit and leaves towards the viewer. */
-static lc_status direct_view(lc_rgb *value, int *kind, const lc_scene *scene, const lc_hit *hit, void *user, lc_error *err)
+static lc_status direct_view(lc_rgb *value, int *kind, const lc_scene *scene, const lc_hit *hit, void *user,
+                             lc_error *err)
 {
     (void)user;
     *kind = -1;
@@ -20,25 +21,31 @@ static lc_status direct_view(lc_rgb *value, int *kind, const lc_scene *scene, co
     lc_material material = lc_material_at(scene, hit);
     *kind = 8 * hit->shape + (lc_dot(hit->n, hit->wo) > 0);
     /* A checkerboard's cell, told by its colour. */
-    const lc_texture *front = &lc_scene_description(scene)->materials[lc_scene_description(scene)->shapes[hit->shape].material].side[0].diffuse;
+    const lc_texture *front = &lc_scene_description(scene)
+                                   ->materials[lc_scene_description(scene)->shapes[hit->shape].material]
+                                   .side[0]
+                                   .diffuse;
     if (front->is_checkerboard && material.diffuse.r == front->color[0].r && material.diffuse.g == front->color[0].g)
         *kind += 2;
     if (!value || lc_rgb_max(material.diffuse) == 0)
         return LC_OK;
     lc_rgb irradiance;
-    lc_status status = lc_direct_irradiance(&irradiance, lc_scene_description(scene), hit->p, lc_facing(hit->n, hit->wo), err);
+    lc_status status =
+        lc_direct_irradiance(&irradiance, lc_scene_description(scene), hit->p, lc_facing(hit->n, hit->wo), err);
     if (status == LC_OK)
         *value = lc_rgb_scale(LC_INV_PI, lc_rgb_mul(material.diffuse, irradiance));
     return status;
 }
 
-static lc_status expect_direct(lc_expected *out, const lc_claim *claim, const lc_scene *scene, int threads, lc_error *err)
+static lc_status expect_direct(lc_expected *out, const lc_claim *claim, const lc_scene *scene, int threads,
+                               lc_error *err)
 {
     return lc_expect_view(out, direct_view, NULL, scene, claim->tolerance, threads, err);
 }
 
 /* The arrays are zero already. */
-static lc_status expect_black(lc_expected *out, const lc_claim *claim, const lc_scene *scene, int threads, lc_error *err)
+static lc_status expect_black(lc_expected *out, const lc_claim *claim, const lc_scene *scene, int threads,
+                              lc_error *err)
 {
     (void)out;
     (void)claim;
@@ -66,7 +73,8 @@ static const struct {
     {"two_lights", expect_direct, 1e-5, "Lambert's polygon formula, two lamps"},
     {"five_lights", expect_direct, 1e-5, "closed forms of five lamps, added"},
     {"occluder", expect_direct, 1e-5, "quadrature over the visible part of the lamps"},
-    {"cornell", expect_direct, 1e-5, "Lambert's polygon formula over the visible part of the lamp, clipped by the boxes"},
+    {"cornell", expect_direct, 1e-5,
+     "Lambert's polygon formula over the visible part of the lamp, clipped by the boxes"},
     {"mixed_lights", expect_direct, 1e-5, "area, point and directional light, added"},
     {"textured_lamp", expect_direct, 1e-5, "Lambert's polygon formula for each cell of the checkerboard"},
     {"flipped_twosided", expect_direct, 1e-5, "Lambert's polygon formula"},
@@ -75,7 +83,8 @@ static const struct {
     {"no_lights", expect_black, 0, "no light, no light"},
 };
 
-static lc_status plan(const lc_check *self, lc_claims *claims, const lc_scene *scene, const lc_estimator *estimator, lc_error *err)
+static lc_status plan(const lc_check *self, lc_claims *claims, const lc_scene *scene, const lc_estimator *estimator,
+                      lc_error *err)
 {
     const char *name = lc_scene_description(scene)->name;
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {

@@ -7,7 +7,8 @@
 
 #include "verify/checks/checks.h"
 
-static lc_rgb radiance(const lc_scene *scene, const lc_ray *ray, const lc_hit *hit, const lc_options *options, lc_sampler *sampler)
+static lc_rgb radiance(const lc_scene *scene, const lc_ray *ray, const lc_hit *hit, const lc_options *options,
+                       lc_sampler *sampler)
 {
     (void)ray;
     (void)sampler;
@@ -18,7 +19,8 @@ static const lc_estimator emission_only = {
     LC_ABI, "emission_only", "L_0 alone", "lightcheck.h", 0, LC_AREA | LC_SKY, 0, radiance,
 };
 
-static lc_status plan(const lc_check *self, lc_claims *claims, const lc_scene *scene, const lc_estimator *estimator, lc_error *err)
+static lc_status plan(const lc_check *self, lc_claims *claims, const lc_scene *scene, const lc_estimator *estimator,
+                      lc_error *err)
 {
     /* A lamp from its front and from its back, a sky, a checkerboard. */
     static const char *const scenes[] = {"cornell", "light_behind", "sky", "furnace_checker"};

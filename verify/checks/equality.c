@@ -20,11 +20,13 @@ static const lc_estimator *find_hub(const lc_scene *scene, const lc_estimator *e
     return NULL;
 }
 
-static lc_status plan(const lc_check *self, lc_claims *claims, const lc_scene *scene, const lc_estimator *estimator, lc_error *err)
+static lc_status plan(const lc_check *self, lc_claims *claims, const lc_scene *scene, const lc_estimator *estimator,
+                      lc_error *err)
 {
     const lc_estimator *hub = find_hub(scene, estimator);
     unsigned emitters = estimator->emitters & lc_scene_emitters(scene);
-    if (!hub || hub == estimator || emitters == 0 || (estimator->lobes & lc_scene_lobes(scene)) == 0 || estimator->max_bounces < 1)
+    if (!hub || hub == estimator || emitters == 0 || (estimator->lobes & lc_scene_lobes(scene)) == 0 ||
+        estimator->max_bounces < 1)
         return LC_OK;
     /* Black by both, or without variance: analytic and furnace hold these exactly. */
     const char *name = lc_scene_description(scene)->name;

@@ -15,7 +15,7 @@ typedef struct view {
     void *user;
     const lc_scene *scene;
     lc_expected *out;
-    double error; /* that a pixel's mean may have */
+    double error;         /* that a pixel's mean may have */
     pthread_mutex_t lock; /* of what follows */
     int next_row;
     lc_status status;
@@ -38,10 +38,17 @@ static lc_status border_is_mixed(const view *v, int x, int y, int kind, int *mix
         double t = (i % 8) / 8.0, dx = 0, dy = 0;
         int here;
         switch (i / 8) {
-        case 0: dx = t; break;
-        case 1: dx = 1, dy = t; break;
-        case 2: dx = 1 - t, dy = 1; break;
-        default: dy = 1 - t;
+        case 0:
+            dx = t;
+            break;
+        case 1:
+            dx = 1, dy = t;
+            break;
+        case 2:
+            dx = 1 - t, dy = 1;
+            break;
+        default:
+            dy = 1 - t;
         }
         lc_status status = look(v, x + dx, y + dy, NULL, &here, err);
         if (status != LC_OK)
@@ -52,7 +59,8 @@ static lc_status border_is_mixed(const view *v, int x, int y, int kind, int *mix
 }
 
 /* Mean over a square by 3 x 3 Gauss-Legendre nodes, exact to degree 5. `mixed` is set where a node is of another kind. */
-static lc_status gauss(const view *v, double x, double y, double side, int kind, lc_rgb *mean, int *mixed, lc_error *err)
+static lc_status gauss(const view *v, double x, double y, double side, int kind, lc_rgb *mean, int *mixed,
+                       lc_error *err)
 {
     static const double nodes[3] = {0.11270166537925831148, 0.5, 0.88729833462074168852};
     static const double weights[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
@@ -71,12 +79,14 @@ static lc_status gauss(const view *v, double x, double y, double side, int kind,
 
 /* The same, cut in four until halving the side changes the pixel's mean by no more than v->error: kinks (horizons, the edges of
  * penumbras) run through pixels, and a dark pixel has so little noise that a render would show the rule's error. */
-static lc_status adapt(const view *v, double x, double y, double side, int kind, lc_rgb *mean, int *mixed, lc_error *err)
+static lc_status adapt(const view *v, double x, double y, double side, int kind, lc_rgb *mean, int *mixed,
+                       lc_error *err)
 {
     lc_rgb coarse = *mean, quarter[4];
     *mean = lc_black();
     for (int i = 0; i < 4; ++i) {
-        lc_status status = gauss(v, x + side / 2 * (i % 2), y + side / 2 * (i / 2), side / 2, kind, &quarter[i], mixed, err);
+        lc_status status =
+            gauss(v, x + side / 2 * (i % 2), y + side / 2 * (i / 2), side / 2, kind, &quarter[i], mixed, err);
         if (status != LC_OK)
             return status;
         *mean = lc_rgb_add(*mean, lc_rgb_scale(0.25, quarter[i]));
@@ -86,7 +96,8 @@ static lc_status adapt(const view *v, double x, double y, double side, int kind,
         return LC_OK;
     *mean = lc_black();
     for (int i = 0; i < 4; ++i) {
-        lc_status status = adapt(v, x + side / 2 * (i % 2), y + side / 2 * (i / 2), side / 2, kind, &quarter[i], mixed, err);
+        lc_status status =
+            adapt(v, x + side / 2 * (i % 2), y + side / 2 * (i / 2), side / 2, kind, &quarter[i], mixed, err);
         if (status != LC_OK)
             return status;
         *mean = lc_rgb_add(*mean, lc_rgb_scale(0.25, quarter[i]));
@@ -122,7 +133,8 @@ static lc_status rough_mean(const view *v, double *mean, lc_error *err)
     for (int i = 0; i < 64; ++i) {
         lc_rgb value;
         int kind;
-        lc_status status = look(v, v->out->width * ((i % 8) + 0.5) / 8, v->out->height * ((i / 8) + 0.5) / 8, &value, &kind, err);
+        lc_status status =
+            look(v, v->out->width * ((i % 8) + 0.5) / 8, v->out->height * ((i / 8) + 0.5) / 8, &value, &kind, err);
         if (status != LC_OK)
             return status;
         sum += (value.r + value.g + value.b) / 3;
@@ -153,7 +165,8 @@ static void *work(void *argument)
     }
 }
 
-lc_status lc_expect_view(lc_expected *out, lc_view_fn *function, void *user, const lc_scene *scene, double tolerance, int threads, lc_error *err)
+lc_status lc_expect_view(lc_expected *out, lc_view_fn *function, void *user, const lc_scene *scene, double tolerance,
+                         int threads, lc_error *err)
 {
     view v = {function, user, scene, out, 0, PTHREAD_MUTEX_INITIALIZER, 0, LC_OK, {""}};
     pthread_t thread[64];

@@ -12,7 +12,8 @@ typedef struct furnace_view {
     lc_rgb irradiance;
 } furnace_view;
 
-static lc_status inside_view(lc_rgb *value, int *kind, const lc_scene *scene, const lc_hit *hit, void *user, lc_error *err)
+static lc_status inside_view(lc_rgb *value, int *kind, const lc_scene *scene, const lc_hit *hit, void *user,
+                             lc_error *err)
 {
     const furnace_view *furnace = user;
     if (!hit->valid)
@@ -24,7 +25,8 @@ static lc_status inside_view(lc_rgb *value, int *kind, const lc_scene *scene, co
     return LC_OK;
 }
 
-static lc_status expect_inside(lc_expected *out, const lc_claim *claim, const lc_scene *scene, int threads, lc_error *err)
+static lc_status expect_inside(lc_expected *out, const lc_claim *claim, const lc_scene *scene, int threads,
+                               lc_error *err)
 {
     const lc_scene_desc *desc = lc_scene_description(scene);
     if (desc->shape_count != 1 || desc->shapes[0].kind != LC_SPHERE || !desc->shapes[0].emits)
@@ -35,18 +37,21 @@ static lc_status expect_inside(lc_expected *out, const lc_claim *claim, const lc
     return lc_expect_view(out, inside_view, &furnace, scene, claim->tolerance, threads, err);
 }
 
-static lc_status plan(const lc_check *self, lc_claims *claims, const lc_scene *scene, const lc_estimator *estimator, lc_error *err)
+static lc_status plan(const lc_check *self, lc_claims *claims, const lc_scene *scene, const lc_estimator *estimator,
+                      lc_error *err)
 {
     static const char *const scenes[] = {"furnace_sphere", "furnace_checker"};
     for (size_t i = 0; i < sizeof scenes / sizeof scenes[0]; ++i) {
-        if (strcmp(scenes[i], lc_scene_description(scene)->name) != 0 || !lc_sees_everything(scene, estimator) || estimator->max_bounces < 1)
+        if (strcmp(scenes[i], lc_scene_description(scene)->name) != 0 || !lc_sees_everything(scene, estimator) ||
+            estimator->max_bounces < 1)
             continue;
         lc_claim *claim = lc_claims_add(claims, self, scene, estimator);
         if (!claim)
             return lc_fail(err, LC_FAULT, "out of memory for the claims");
         claim->expect = expect_inside;
         claim->tolerance = 1e-9;
-        claim->may_be_still = !lc_scene_description(scene)->shapes[0].radiance.is_checkerboard; /* the kernel is constant */
+        claim->may_be_still =
+            !lc_scene_description(scene)->shapes[0].radiance.is_checkerboard; /* the kernel is constant */
         claim->source = "inside of a sphere: E = pi <Le>, L_1 = rho(x) <Le>";
     }
     return LC_OK;

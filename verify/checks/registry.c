@@ -9,9 +9,9 @@
 #include "verify/checks/checks.h"
 
 #define CHECKS(X) \
-    X(emission)   \
-    X(analytic)   \
-    X(furnace)    \
+    X(emission) \
+    X(analytic) \
+    X(furnace) \
     X(equality)
 
 #define DECLARE(id) extern const lc_check lc_check_##id;

@@ -16,9 +16,11 @@ static void describe_bad(lc_row *row, const lc_film *film, uint64_t seed)
 {
     row->verdict = LC_ROW_FAIL;
     snprintf(row->reason, sizeof row->reason,
-             "%s on %s: %llu samples are NaN, infinite or negative, the first (%g, %g, %g) at pixel %d,%d sample %llu seed %llu", film->estimator,
-             film->scene, (unsigned long long)film->bad, film->bad_value[0], film->bad_value[1], film->bad_value[2], film->bad_x, film->bad_y,
-             (unsigned long long)film->bad_sample, (unsigned long long)seed);
+             "%s on %s: %llu samples are NaN, infinite or negative, the first (%g, %g, %g) at pixel %d,%d sample %llu "
+             "seed %llu",
+             film->estimator, film->scene, (unsigned long long)film->bad, film->bad_value[0], film->bad_value[1],
+             film->bad_value[2], film->bad_x, film->bad_y, (unsigned long long)film->bad_sample,
+             (unsigned long long)seed);
 }
 
 static void describe(lc_row *row, const lc_pyramid *p)
@@ -26,10 +28,13 @@ static void describe(lc_row *row, const lc_pyramid *p)
     if (row->verdict == LC_ROW_FAIL) {
         double whole = 100 * (row->ratio - 1);
         if (p->worst.level >= 0 && p->worst.level < p->levels - 1)
-            snprintf(row->reason, sizeof row->reason, "%s on %s is wrong: %+.3g%% over the image, most clearly in %dx%d pixels at %d,%d (%s)",
-                     row->estimator, row->scene, whole, row->tile_width, row->tile_height, row->tile_x, row->tile_y, channel_names[row->channel]);
+            snprintf(row->reason, sizeof row->reason,
+                     "%s on %s is wrong: %+.3g%% over the image, most clearly in %dx%d pixels at %d,%d (%s)",
+                     row->estimator, row->scene, whole, row->tile_width, row->tile_height, row->tile_x, row->tile_y,
+                     channel_names[row->channel]);
         else
-            snprintf(row->reason, sizeof row->reason, "%s on %s is wrong by %+.3g%% of the reflected light, [%+.3g%%, %+.3g%%] (%s)", row->estimator,
+            snprintf(row->reason, sizeof row->reason,
+                     "%s on %s is wrong by %+.3g%% of the reflected light, [%+.3g%%, %+.3g%%] (%s)", row->estimator,
                      row->scene, whole, 100 * (row->low - 1), 100 * (row->high - 1), channel_names[row->channel]);
     } else if (row->verdict == LC_ROW_UNDECIDED) {
         const lc_level *image = &p->level[p->levels - 1];
@@ -37,8 +42,8 @@ static void describe(lc_row *row, const lc_pyramid *p)
                           : image->still  ? "its samples show no variance, which proves nothing"
                           : image->skewed ? "rare bright samples: the tails are too heavy for this number of samples"
                                           : "the interval is still wider than the margin";
-        snprintf(row->reason, sizeof row->reason, "%s on %s: undecided after %llu samples a pixel: %s", row->estimator, row->scene,
-                 (unsigned long long)row->samples, why);
+        snprintf(row->reason, sizeof row->reason, "%s on %s: undecided after %llu samples a pixel: %s", row->estimator,
+                 row->scene, (unsigned long long)row->samples, why);
     }
 }
 
@@ -77,7 +82,9 @@ static double hardness(const lc_pyramid *p, double scale)
 /* Mean over the pixels that are not skipped, of the film or of the expected values. */
 static double mean_of(const lc_film *film, const lc_expected *expected, const unsigned char *skip, int channel)
 {
-    size_t count = film ? (size_t)film->width * (size_t)film->height : (size_t)expected->width * (size_t)expected->height, used = 0;
+    size_t count =
+               film ? (size_t)film->width * (size_t)film->height : (size_t)expected->width * (size_t)expected->height,
+           used = 0;
     double sum = 0;
     for (size_t i = 0; i < count; ++i) {
         if (skip && skip[i])
@@ -91,7 +98,8 @@ static double mean_of(const lc_film *film, const lc_expected *expected, const un
 /* ---- exact claims ----------------------------------------------------------------------------------------------- */
 
 /* Pixel by pixel, against the other film's or the expected values. */
-static void compare_exactly(lc_row *row, const lc_film *film, const lc_film *other, const lc_expected *expected, double tolerance)
+static void compare_exactly(lc_row *row, const lc_film *film, const lc_film *other, const lc_expected *expected,
+                            double tolerance)
 {
     size_t count = (size_t)film->width * (size_t)film->height;
     row->verdict = LC_ROW_PASS;
@@ -99,13 +107,15 @@ static void compare_exactly(lc_row *row, const lc_film *film, const lc_film *oth
         for (int c = 0; c < 3; ++c) {
             if (expected && expected->skip[i])
                 continue;
-            double is = film->pixels[i].c[c].mean, should = other ? other->pixels[i].c[c].mean : expected->rgb[3 * i + (size_t)c];
+            double is = film->pixels[i].c[c].mean,
+                   should = other ? other->pixels[i].c[c].mean : expected->rgb[3 * i + (size_t)c];
             if (lc_decide_exact(is - should, tolerance * fabs(should)) == LC_PASS)
                 continue;
             row->verdict = LC_ROW_FAIL;
-            snprintf(row->reason, sizeof row->reason, "%s on %s is wrong: pixel %d,%d has %s = %.9g, expected exactly %.9g (%+.3g%%)", row->estimator,
-                     row->scene, (int)(i % (size_t)film->width), (int)(i / (size_t)film->width), channel_names[c], is, should,
-                     100 * (is / should - 1));
+            snprintf(row->reason, sizeof row->reason,
+                     "%s on %s is wrong: pixel %d,%d has %s = %.9g, expected exactly %.9g (%+.3g%%)", row->estimator,
+                     row->scene, (int)(i % (size_t)film->width), (int)(i / (size_t)film->width), channel_names[c], is,
+                     should, 100 * (is / should - 1));
             return;
         }
     }
@@ -117,11 +127,11 @@ static lc_status judge_exact(lc_row *row, lc_session *session, const lc_claim *c
     const lc_expected *expected = NULL;
     uint32_t arm = lc_session_arm(claim->estimator);
     row->samples = LC_BLOCK;
-    lc_status status =
-        lc_session_film(&film, session, claim->scene, claim->estimator, claim->min_bounces, claim->max_bounces, arm, row->samples, err);
+    lc_status status = lc_session_film(&film, session, claim->scene, claim->estimator, claim->min_bounces,
+                                       claim->max_bounces, arm, row->samples, err);
     if (status == LC_OK)
-        status = claim->other ? lc_session_film(&other, session, claim->scene, claim->other, claim->min_bounces, claim->max_bounces, arm,
-                                                row->samples, err)
+        status = claim->other ? lc_session_film(&other, session, claim->scene, claim->other, claim->min_bounces,
+                                                claim->max_bounces, arm, row->samples, err)
                               : lc_session_values(&expected, session, claim, err);
     if (status != LC_OK)
         return status;
@@ -148,9 +158,12 @@ static int is_still(const lc_film *film)
 /* ---- statistical claims -------------------------------------------------------------------------------------------- */
 
 /* c of an estimator on a scene: from the table, else from a pilot whose samples are never used again. */
-static lc_status noise_of(double *c, lc_session *session, const lc_claim *claim, const lc_estimator *estimator, lc_error *err)
+static lc_status noise_of(double *c, lc_session *session, const lc_claim *claim, const lc_estimator *estimator,
+                          lc_error *err)
 {
-    *c = claim->min_bounces == 1 && claim->max_bounces == 1 ? lc_cell_noise(lc_scene_description(claim->scene)->name, estimator->name) : NAN;
+    *c = claim->min_bounces == 1 && claim->max_bounces == 1
+             ? lc_cell_noise(lc_scene_description(claim->scene)->name, estimator->name)
+             : NAN;
     if (!isnan(*c))
         return LC_OK;
     const lc_film *pilot;
@@ -168,8 +181,8 @@ typedef struct look_result {
     double scale;
 } look_result;
 
-static lc_status judge_look(look_result *out, const lc_film *film, const lc_film *other, const lc_expected *expected, lc_estimate *field,
-                            lc_pyramid_plan *plan, double margin, double tolerance, lc_error *err)
+static lc_status judge_look(look_result *out, const lc_film *film, const lc_film *other, const lc_expected *expected,
+                            lc_estimate *field, lc_pyramid_plan *plan, double margin, double tolerance, lc_error *err)
 {
     const unsigned char *skip = expected ? expected->skip : NULL;
     double most = -1;
@@ -200,7 +213,8 @@ static lc_status judge_look(look_result *out, const lc_film *film, const lc_film
     return LC_OK;
 }
 
-static lc_status judge_statistically(lc_row *row, lc_session *session, const lc_claim *claim, lc_estimate *field, lc_error *err)
+static lc_status judge_statistically(lc_row *row, lc_session *session, const lc_claim *claim, lc_estimate *field,
+                                     lc_error *err)
 {
     const lc_scene_desc *desc = lc_scene_description(claim->scene);
     int pixels = desc->width * desc->height;
@@ -231,8 +245,8 @@ static lc_status judge_statistically(lc_row *row, lc_session *session, const lc_
         status = lc_session_film(&film, session, claim->scene, claim->estimator, claim->min_bounces, claim->max_bounces,
                                  lc_session_arm(claim->estimator), row->samples, err);
         if (status == LC_OK && claim->other)
-            status = lc_session_film(&other, session, claim->scene, claim->other, claim->min_bounces, claim->max_bounces,
-                                     lc_session_arm(claim->other), row->samples, err);
+            status = lc_session_film(&other, session, claim->scene, claim->other, claim->min_bounces,
+                                     claim->max_bounces, lc_session_arm(claim->other), row->samples, err);
         if (status != LC_OK)
             return status;
         row->paths = row->samples * (uint64_t)pixels;
@@ -263,8 +277,8 @@ lc_status lc_judge_claim(lc_row *row, lc_session *session, const lc_claim *claim
     snprintf(row->scene, sizeof row->scene, "%s", desc->name);
     snprintf(row->estimator, sizeof row->estimator, "%s", claim->estimator->name);
     snprintf(row->source, sizeof row->source, "%s", claim->source);
-    snprintf(row->reproduce, sizeof row->reproduce, "%s verify --suite %s -c %s -e %s --scene %s --seed %llu", o->program, o->suite->name, row->check,
-             row->estimator, row->scene, (unsigned long long)o->seed);
+    snprintf(row->reproduce, sizeof row->reproduce, "%s verify --suite %s -c %s -e %s --scene %s --seed %llu",
+             o->program, o->suite->name, row->check, row->estimator, row->scene, (unsigned long long)o->seed);
     row->exact = claim->exact;
     if (claim->exact)
         return judge_exact(row, session, claim, err);
@@ -276,7 +290,8 @@ lc_status lc_judge_claim(lc_row *row, lc_session *session, const lc_claim *claim
     return status;
 }
 
-lc_status lc_compare_films(lc_row *row, const lc_film *a, const lc_film *b, double margin, double false_fail, double false_pass, lc_error *err)
+lc_status lc_compare_films(lc_row *row, const lc_film *a, const lc_film *b, double margin, double false_fail,
+                           double false_pass, lc_error *err)
 {
     lc_budget budget = {false_fail, false_pass, 1, 3, 1};
     lc_pyramid_plan plan;

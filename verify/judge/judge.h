@@ -24,9 +24,9 @@ typedef struct lc_suite {
     double most_samples; /* cap on the planned samples of all cells together */
 } lc_suite;
 
-extern const lc_suite lc_suites[];            /* ends with name = NULL */
-extern const char *const lc_suite_scenes[];   /* ends with NULL */
-extern const lc_cell lc_cells[];              /* ends with scene = NULL */
+extern const lc_suite lc_suites[];          /* ends with name = NULL */
+extern const char *const lc_suite_scenes[]; /* ends with NULL */
+extern const lc_cell lc_cells[];            /* ends with scene = NULL */
 
 const lc_suite *lc_suite_find(const char *name);
 /* c of that cell, or of the cell of the estimator it was made from; NAN when the table does not know it (then a discarded pilot measures it). */
@@ -38,16 +38,16 @@ uint64_t lc_planned_samples(double c, double margin, int pixels);
 
 typedef struct lc_verify_options {
     const lc_suite *suite;
-    double margin;                     /* relative, for c <= 1; 0: the suite's */
-    double false_fail, false_pass;     /* of the whole run */
+    double margin;                 /* relative, for c <= 1; 0: the suite's */
+    double false_fail, false_pass; /* of the whole run */
     uint64_t seed;
     int threads;
-    const lc_estimator *estimator;     /* only this one (it need not be in the registry), or NULL: all */
-    const char *check, *scene;         /* only these, or NULL */
+    const lc_estimator *estimator; /* only this one (it need not be in the registry), or NULL: all */
+    const char *check, *scene;     /* only these, or NULL */
     /* Called after each row, in the order of the report; may be NULL. */
     void (*on_row)(void *user, const lc_row *row, int done, int count);
     void *user;
-    const char *program;               /* for the reproducing lines */
+    const char *program; /* for the reproducing lines */
 } lc_verify_options;
 
 /* suite quick, 1e-6 both, seed 1, all cores. */
@@ -60,6 +60,7 @@ lc_status lc_verify(lc_report *report, const lc_verify_options *options, lc_load
 /* ---- two images ------------------------------------------------------------------------------------------------ */
 
 /* Decides whether two films of different streams have the same mean, within a relative margin of the second's mean. */
-lc_status lc_compare_films(lc_row *row, const lc_film *a, const lc_film *b, double margin, double false_fail, double false_pass, lc_error *err);
+lc_status lc_compare_films(lc_row *row, const lc_film *a, const lc_film *b, double margin, double false_fail,
+                           double false_pass, lc_error *err);
 
 #endif

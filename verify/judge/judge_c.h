@@ -37,8 +37,9 @@ typedef struct lc_session {
 enum { LC_MOST_LOOKS = 5 };
 
 /* The film of that stream with exactly `samples` a pixel. The film is the session's. */
-lc_status lc_session_film(const lc_film **out, lc_session *session, const lc_scene *scene, const lc_estimator *estimator, int min_bounces, int max_bounces,
-                          uint32_t arm, uint64_t samples, lc_error *err);
+lc_status lc_session_film(const lc_film **out, lc_session *session, const lc_scene *scene,
+                          const lc_estimator *estimator, int min_bounces, int max_bounces, uint32_t arm,
+                          uint64_t samples, lc_error *err);
 /* The expected values of the claim. They are the session's. */
 lc_status lc_session_values(const lc_expected **out, lc_session *session, const lc_claim *claim, lc_error *err);
 /* Drops all films and values: the next scene needs none of them. */

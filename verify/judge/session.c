@@ -18,8 +18,8 @@ uint32_t lc_session_arm(const lc_estimator *estimator)
 
 static int same_stream(const lc_stock_film *a, const lc_stock_film *b)
 {
-    return a->scene == b->scene && a->estimator == b->estimator && a->min_bounces == b->min_bounces && a->max_bounces == b->max_bounces &&
-           a->arm == b->arm;
+    return a->scene == b->scene && a->estimator == b->estimator && a->min_bounces == b->min_bounces &&
+           a->max_bounces == b->max_bounces && a->arm == b->arm;
 }
 
 /* The film of the stream with the most samples up to `samples`, or NULL. */
@@ -47,8 +47,9 @@ static lc_status copy_film(lc_film **out, const lc_film *from, lc_error *err)
 }
 
 /* Every look is kept, so that a claim sees exactly the samples of its own looks, whatever other claims have asked for before. */
-lc_status lc_session_film(const lc_film **out, lc_session *session, const lc_scene *scene, const lc_estimator *estimator, int min_bounces, int max_bounces,
-                          uint32_t arm, uint64_t samples, lc_error *err)
+lc_status lc_session_film(const lc_film **out, lc_session *session, const lc_scene *scene,
+                          const lc_estimator *estimator, int min_bounces, int max_bounces, uint32_t arm,
+                          uint64_t samples, lc_error *err)
 {
     lc_stock_film key = {scene, estimator, min_bounces, max_bounces, arm, NULL};
     const lc_film *base = longest_film(session, &key, samples);
@@ -61,7 +62,8 @@ lc_status lc_session_film(const lc_film **out, lc_session *session, const lc_sce
         return lc_fail(err, LC_FAULT, "out of memory for a film");
     session->films = films;
     const lc_scene_desc *desc = lc_scene_description(scene);
-    lc_status status = base ? copy_film(&key.film, base, err) : lc_film_create(&key.film, desc->width, desc->height, err);
+    lc_status status =
+        base ? copy_film(&key.film, base, err) : lc_film_create(&key.film, desc->width, desc->height, err);
     if (status != LC_OK)
         return status;
     films[session->film_count++] = key;
@@ -98,8 +100,9 @@ lc_status lc_session_values(const lc_expected **out, lc_session *session, const 
         return lc_fail(err, LC_FAULT, "out of memory for expected values");
     session->values = values;
     lc_expected expected = {desc->width, desc->height, calloc(3 * pixels, sizeof(double)), calloc(pixels, 1)};
-    lc_status status = expected.rgb && expected.skip ? claim->expect(&expected, claim, claim->scene, session->options->threads, err)
-                                                     : lc_fail(err, LC_FAULT, "out of memory for expected values");
+    lc_status status = expected.rgb && expected.skip
+                           ? claim->expect(&expected, claim, claim->scene, session->options->threads, err)
+                           : lc_fail(err, LC_FAULT, "out of memory for expected values");
     if (status != LC_OK) {
         release_expected(&expected);
         return status;

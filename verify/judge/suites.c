@@ -14,10 +14,10 @@ const lc_suite lc_suites[] = {
 };
 
 const char *const lc_suite_scenes[] = {
-    "plane_point",  "plane_directional", "plane_rectangle", "plane_tilted",     "plane_disk",     "plane_sphere",
-    "plane_cube",   "lamp_100w",         "two_lights",      "five_lights",      "occluder",       "cornell",
-    "cornell_small", "cornell_large",    "light_behind",    "no_lights",        "sky",            "flipped_twosided",
-    "furnace_sphere", "furnace_checker", "mixed_lights",    "textured_lamp",    NULL,
+    "plane_point",    "plane_directional", "plane_rectangle", "plane_tilted",  "plane_disk", "plane_sphere",
+    "plane_cube",     "lamp_100w",         "two_lights",      "five_lights",   "occluder",   "cornell",
+    "cornell_small",  "cornell_large",     "light_behind",    "no_lights",     "sky",        "flipped_twosided",
+    "furnace_sphere", "furnace_checker",   "mixed_lights",    "textured_lamp", NULL,
 };
 
 const lc_cell lc_cells[] = {

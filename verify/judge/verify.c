@@ -27,7 +27,8 @@ static int is_registered(const lc_estimator *estimator)
     return 0;
 }
 
-static lc_status plan_pair(lc_claims *claims, int *not_applicable, const lc_scene *scene, const lc_estimator *estimator, lc_error *err)
+static lc_status plan_pair(lc_claims *claims, int *not_applicable, const lc_scene *scene, const lc_estimator *estimator,
+                           lc_error *err)
 {
     int before = claims->count;
     for (const lc_check *const *c = lc_checks; *c; ++c) {
@@ -39,7 +40,8 @@ static lc_status plan_pair(lc_claims *claims, int *not_applicable, const lc_scen
     return LC_OK;
 }
 
-static lc_status plan_scene(lc_claims *claims, int *not_applicable, const lc_verify_options *o, const lc_scene *scene, lc_error *err)
+static lc_status plan_scene(lc_claims *claims, int *not_applicable, const lc_verify_options *o, const lc_scene *scene,
+                            lc_error *err)
 {
     for (const lc_estimator *const *e = lc_estimators; *e; ++e) {
         lc_status status = plan_pair(claims, not_applicable, scene, *e, err);
@@ -53,7 +55,8 @@ static lc_status plan_scene(lc_claims *claims, int *not_applicable, const lc_ver
 
 static int is_selected(const lc_verify_options *o, const lc_claim *claim)
 {
-    return (!o->estimator || o->estimator == claim->estimator) && (!o->check || strcmp(o->check, claim->check->name) == 0) &&
+    return (!o->estimator || o->estimator == claim->estimator) &&
+           (!o->check || strcmp(o->check, claim->check->name) == 0) &&
            (!o->scene || strcmp(o->scene, lc_scene_description(claim->scene)->name) == 0);
 }
 

@@ -44,7 +44,8 @@ static lc_rgb by_light(const lc_scene *scene, const lc_hit *hit, lc_sampler *sam
     if (!(bugs & NO_VISIBILITY) && !lc_visible(scene, hit, &light))
         return lc_black();
     double lights = bugs & NO_LIGHT_COUNT ? 1.0 : count;
-    return lc_rgb_scale(lights * surface_factor(bugs, cos_surface), lc_rgb_mul(lc_bsdf_eval(scene, hit, light.wi), incoming));
+    return lc_rgb_scale(lights * surface_factor(bugs, cos_surface),
+                        lc_rgb_mul(lc_bsdf_eval(scene, hit, light.wi), incoming));
 }
 
 static lc_rgb by_hemisphere(const lc_scene *scene, const lc_hit *hit, lc_sampler *sampler, unsigned bugs)
@@ -69,24 +70,26 @@ static lc_rgb sum(direct_fn *direct, unsigned bugs, const lc_scene *scene, const
     return total;
 }
 
-#define LIGHT_MUTANT(id, bugs, summary)                                                                                    \
-    static lc_rgb radiance_##id(const lc_scene *scene, const lc_ray *ray, const lc_hit *hit, const lc_options *options,     \
-                                lc_sampler *sampler)                                                                        \
-    {                                                                                                                       \
-        (void)ray;                                                                                                          \
-        return sum(by_light, bugs, scene, hit, options, sampler);                                                           \
-    }                                                                                                                       \
-    LC_ESTIMATOR(id) = {LC_ABI,     #id, summary, "light_direct, broken", LC_DIFFUSE, LC_AREA | LC_POINT | LC_DIRECTIONAL, 1, \
-                        radiance_##id}
+#define LIGHT_MUTANT(id, bugs, summary) \
+    static lc_rgb radiance_##id(const lc_scene *scene, const lc_ray *ray, const lc_hit *hit, \
+                                const lc_options *options, lc_sampler *sampler) \
+    { \
+        (void)ray; \
+        return sum(by_light, bugs, scene, hit, options, sampler); \
+    } \
+    LC_ESTIMATOR( \
+        id) = {LC_ABI, #id,          summary, "light_direct, broken", LC_DIFFUSE, LC_AREA | LC_POINT | LC_DIRECTIONAL, \
+               1,      radiance_##id}
 
-#define HEMISPHERE_MUTANT(id, bugs, summary)                                                                               \
-    static lc_rgb radiance_##id(const lc_scene *scene, const lc_ray *ray, const lc_hit *hit, const lc_options *options,     \
-                                lc_sampler *sampler)                                                                        \
-    {                                                                                                                       \
-        (void)ray;                                                                                                          \
-        return sum(by_hemisphere, bugs, scene, hit, options, sampler);                                                      \
-    }                                                                                                                       \
-    LC_ESTIMATOR(id) = {LC_ABI, #id, summary, "hemisphere_direct, broken", LC_DIFFUSE, LC_AREA | LC_SKY, 1, radiance_##id}
+#define HEMISPHERE_MUTANT(id, bugs, summary) \
+    static lc_rgb radiance_##id(const lc_scene *scene, const lc_ray *ray, const lc_hit *hit, \
+                                const lc_options *options, lc_sampler *sampler) \
+    { \
+        (void)ray; \
+        return sum(by_hemisphere, bugs, scene, hit, options, sampler); \
+    } \
+    LC_ESTIMATOR(id) = {LC_ABI,           #id, summary,      "hemisphere_direct, broken", LC_DIFFUSE, \
+                        LC_AREA | LC_SKY, 1,   radiance_##id}
 
 LIGHT_MUTANT(light_no_cosine, NO_COSINE, "the cosine at the surface is missing");
 LIGHT_MUTANT(light_no_pi, NO_PI, "the BRDF is albedo instead of albedo / pi");

@@ -4,17 +4,17 @@
  */
 #include <stddef.h>
 
-#include "verify/mutants/mutants.h"
+#include "registry.h"
 
-#define MUTANTS(X)                           \
-    X(light_no_cosine, "light_direct")       \
-    X(light_no_pi, "light_direct")           \
-    X(light_no_count, "light_direct")        \
+#define MUTANTS(X) \
+    X(light_no_cosine, "light_direct") \
+    X(light_no_pi, "light_direct") \
+    X(light_no_count, "light_direct") \
     X(light_no_light_cosine, "light_direct") \
-    X(light_no_visibility, "light_direct")   \
-    X(light_no_distance, "light_direct")     \
-    X(light_back_emits, "light_direct")      \
-    X(light_one_percent, "light_direct")     \
+    X(light_no_visibility, "light_direct") \
+    X(light_no_distance, "light_direct") \
+    X(light_back_emits, "light_direct") \
+    X(light_one_percent, "light_direct") \
     X(hemisphere_no_cosine, "hemisphere_direct") \
     X(hemisphere_no_pi, "hemisphere_direct") \
     X(hemisphere_cosine_directions, "hemisphere_direct")

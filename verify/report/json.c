@@ -11,9 +11,10 @@ static json_t *number(double value) { return isfinite(value) ? json_real(value) 
 
 static json_t *row_json(const lc_row *row)
 {
-    json_t *o = json_pack("{s:s, s:s, s:s, s:s, s:b, s:s, s:I, s:I, s:s}", "check", row->check, "scene", row->scene, "estimator", row->estimator,
-                          "verdict", lc_row_verdict_name(row->verdict), "exact", row->exact, "expected_source", row->source, "samples_per_pixel",
-                          (json_int_t)row->samples, "paths", (json_int_t)row->paths, "reproduce", row->reproduce);
+    json_t *o = json_pack("{s:s, s:s, s:s, s:s, s:b, s:s, s:I, s:I, s:s}", "check", row->check, "scene", row->scene,
+                          "estimator", row->estimator, "verdict", lc_row_verdict_name(row->verdict), "exact",
+                          row->exact, "expected_source", row->source, "samples_per_pixel", (json_int_t)row->samples,
+                          "paths", (json_int_t)row->paths, "reproduce", row->reproduce);
     if (!o)
         return NULL;
     if (!row->exact) {
@@ -29,8 +30,9 @@ static json_t *row_json(const lc_row *row)
         json_object_set_new(o, "reason", json_string(row->reason));
     if (row->tile_width)
         json_object_set_new(o, "worst_tile",
-                            json_pack("{s:i, s:i, s:i, s:i, s:o, s:o}", "x", row->tile_x, "y", row->tile_y, "width", row->tile_width, "height",
-                                      row->tile_height, "ratio", number(row->tile_ratio), "log10_p", number(row->tile_log10_p)));
+                            json_pack("{s:i, s:i, s:i, s:i, s:o, s:o}", "x", row->tile_x, "y", row->tile_y, "width",
+                                      row->tile_width, "height", row->tile_height, "ratio", number(row->tile_ratio),
+                                      "log10_p", number(row->tile_log10_p)));
     return o;
 }
 
@@ -40,9 +42,11 @@ lc_status lc_report_json(FILE *out, const lc_report *report, lc_error *err)
     for (int i = 0; rows && i < report->count; ++i)
         json_array_append_new(rows, row_json(&report->rows[i]));
     char seed[32];
-    snprintf(seed, sizeof seed, "%llu", (unsigned long long)report->seed); /* 64 bits do not fit a JSON number everywhere */
-    json_t *o = json_pack("{s:s, s:s, s:s, s:s, s:o, s:o, s:i, s:I, s:o}", "program", "lightcheck", "version", LC_VERSION, "suite", report->suite,
-                          "seed", seed, "false_fail_probability", number(report->false_fail), "false_pass_probability", number(report->false_pass),
+    snprintf(seed, sizeof seed, "%llu",
+             (unsigned long long)report->seed); /* 64 bits do not fit a JSON number everywhere */
+    json_t *o = json_pack("{s:s, s:s, s:s, s:s, s:o, s:o, s:i, s:I, s:o}", "program", "lightcheck", "version",
+                          LC_VERSION, "suite", report->suite, "seed", seed, "false_fail_probability",
+                          number(report->false_fail), "false_pass_probability", number(report->false_pass),
                           "not_applicable", report->not_applicable, "paths", (json_int_t)report->paths, "rows", rows);
     if (!o)
         return lc_fail(err, LC_FAULT, "out of memory for the JSON report");

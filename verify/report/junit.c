@@ -9,11 +9,20 @@ static void print_escaped(FILE *out, const char *text)
 {
     for (const unsigned char *c = (const unsigned char *)text; *c; ++c) {
         switch (*c) {
-        case '&': fputs("&amp;", out); break;
-        case '<': fputs("&lt;", out); break;
-        case '>': fputs("&gt;", out); break;
-        case '"': fputs("&quot;", out); break;
-        default: fputc(*c < 0x20 ? ' ' : *c, out); /* control characters are not XML */
+        case '&':
+            fputs("&amp;", out);
+            break;
+        case '<':
+            fputs("&lt;", out);
+            break;
+        case '>':
+            fputs("&gt;", out);
+            break;
+        case '"':
+            fputs("&quot;", out);
+            break;
+        default:
+            fputc(*c < 0x20 ? ' ' : *c, out); /* control characters are not XML */
         }
     }
 }
@@ -45,9 +54,13 @@ void lc_report_junit(FILE *out, const lc_report *report)
     for (int i = 0; i < report->count; ++i)
         failures += report->rows[i].verdict != LC_ROW_PASS;
     fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n", out);
-    fprintf(out, "<testsuites tests=\"%d\" failures=\"%d\">\n  <testsuite name=\"lightcheck.%s\" tests=\"%d\" failures=\"%d\" errors=\"0\" skipped=\"0\">\n",
+    fprintf(out,
+            "<testsuites tests=\"%d\" failures=\"%d\">\n  <testsuite name=\"lightcheck.%s\" tests=\"%d\" "
+            "failures=\"%d\" errors=\"0\" skipped=\"0\">\n",
             report->count, failures, report->suite, report->count, failures);
-    fprintf(out, "    <properties>\n      <property name=\"seed\" value=\"%llu\"/>\n      <property name=\"version\" value=\"%s\"/>\n    </properties>\n",
+    fprintf(out,
+            "    <properties>\n      <property name=\"seed\" value=\"%llu\"/>\n      <property name=\"version\" "
+            "value=\"%s\"/>\n    </properties>\n",
             (unsigned long long)report->seed, LC_VERSION);
     for (int i = 0; i < report->count; ++i)
         print_row(out, &report->rows[i]);

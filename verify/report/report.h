@@ -15,21 +15,22 @@ typedef enum lc_row_verdict { LC_ROW_PASS, LC_ROW_FAIL, LC_ROW_UNDECIDED } lc_ro
 typedef struct lc_row {
     char check[32], scene[64], estimator[64];
     lc_row_verdict verdict;
-    int exact;            /* a deterministic claim: no statistics; ratio and interval mean nothing */
-    int channel;          /* 0 1 2: the one that was hardest; the numbers below are its */
-    double ratio;         /* mean / expected mean */
-    double low, high;     /* the interval of the ratio at the error the row was given; may be infinite */
-    double margin;        /* relative; the ratio was to be shown within 1 +- margin */
-    double expected;      /* mean radiance [W sr^-1 m^-2] */
-    char source[160];     /* of what was expected */
-    uint64_t samples;     /* a pixel */
-    uint64_t paths;       /* in all, of the estimator under test */
+    int exact;        /* a deterministic claim: no statistics; ratio and interval mean nothing */
+    int channel;      /* 0 1 2: the one that was hardest; the numbers below are its */
+    double ratio;     /* mean / expected mean */
+    double low, high; /* the interval of the ratio at the error the row was given; may be infinite */
+    double margin;    /* relative; the ratio was to be shown within 1 +- margin */
+    double expected;  /* mean radiance [W sr^-1 m^-2] */
+    char source[160]; /* of what was expected */
+    uint64_t samples; /* a pixel */
+    uint64_t paths;   /* in all, of the estimator under test */
     int tile_x, tile_y, tile_width, tile_height; /* the worst tile, width 0: none */
-    double tile_ratio;    /* there: mean / expected mean of the tile; NaN where that is 0 */
-    double tile_log10_p;  /* of it, corrected for all tiles and levels */
-    double missed;        /* PASS: the largest contribution that could have been missed, in units of the mean of a sample; else 0 */
-    char reason[512];     /* in words, for FAIL and UNDECIDED */
-    char reproduce[256];  /* a command line */
+    double tile_ratio;                           /* there: mean / expected mean of the tile; NaN where that is 0 */
+    double tile_log10_p;                         /* of it, corrected for all tiles and levels */
+    double
+        missed; /* PASS: the largest contribution that could have been missed, in units of the mean of a sample; else 0 */
+    char reason[512];    /* in words, for FAIL and UNDECIDED */
+    char reproduce[256]; /* a command line */
 } lc_row;
 
 typedef struct lc_report {

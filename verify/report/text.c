@@ -9,7 +9,8 @@
 
 void lc_report_text_header(FILE *out)
 {
-    fprintf(out, "%-10s %-18s %-20s %-9s %10s  %-22s %8s %9s\n", "check", "scene", "estimator", "verdict", "estimate", "interval", "margin", "paths");
+    fprintf(out, "%-10s %-18s %-20s %-9s %10s  %-22s %8s %9s\n", "check", "scene", "estimator", "verdict", "estimate",
+            "interval", "margin", "paths");
 }
 
 /* 4.6M */
@@ -35,16 +36,16 @@ void lc_report_text_row(FILE *out, const lc_row *row)
             snprintf(interval, sizeof interval, "(none yet)");
         snprintf(margin, sizeof margin, "%.2f%%", 100 * row->margin);
     }
-    fprintf(out, "%-10s %-18s %-20s %-9s %10s  %-22s %8s %9s", row->check, row->scene, row->estimator, lc_row_verdict_name(row->verdict), estimate,
-            interval, margin, paths);
+    fprintf(out, "%-10s %-18s %-20s %-9s %10s  %-22s %8s %9s", row->check, row->scene, row->estimator,
+            lc_row_verdict_name(row->verdict), estimate, interval, margin, paths);
 }
 
 static void print_trouble(FILE *out, const lc_row *row)
 {
     fprintf(out, "    %s\n    expected: %s\n", row->reason, row->source);
     if (row->tile_width)
-        fprintf(out, "    worst tile: %dx%d pixels at %d,%d: %.4g times what is expected there, p = 1e%.0f\n", row->tile_width, row->tile_height,
-                row->tile_x, row->tile_y, row->tile_ratio, row->tile_log10_p);
+        fprintf(out, "    worst tile: %dx%d pixels at %d,%d: %.4g times what is expected there, p = 1e%.0f\n",
+                row->tile_width, row->tile_height, row->tile_x, row->tile_y, row->tile_ratio, row->tile_log10_p);
     fprintf(out, "    again: %s\n", row->reproduce);
 }
 
@@ -60,9 +61,12 @@ void lc_report_text(FILE *out, const lc_report *report)
             print_trouble(out, row);
         ++counts[row->verdict];
     }
-    fprintf(out, "\nestimate: mean of reflected light / what is expected, in the hardest of three channels; PASS: shown within 1 +- margin.\n");
+    fprintf(out, "\nestimate: mean of reflected light / what is expected, in the hardest of three channels; PASS: "
+                 "shown within 1 +- margin.\n");
     fprintf(out, "%s", report->budget);
-    fprintf(out, "%d rows: %d PASS, %d FAIL, %d UNDECIDED; %d pairs of estimator and scene not applicable; %.0f M paths; suite %s, seed %llu\n",
-            report->count, counts[LC_ROW_PASS], counts[LC_ROW_FAIL], counts[LC_ROW_UNDECIDED], report->not_applicable, (double)report->paths * 1e-6,
-            report->suite, (unsigned long long)report->seed);
+    fprintf(out,
+            "%d rows: %d PASS, %d FAIL, %d UNDECIDED; %d pairs of estimator and scene not applicable; %.0f M paths; "
+            "suite %s, seed %llu\n",
+            report->count, counts[LC_ROW_PASS], counts[LC_ROW_FAIL], counts[LC_ROW_UNDECIDED], report->not_applicable,
+            (double)report->paths * 1e-6, report->suite, (unsigned long long)report->seed);
 }

@@ -17,10 +17,7 @@ double lc_missed_value(double margin, double n, double alpha)
     return margin >= 0 && n >= 0 && alpha > 0 && alpha < 1 ? margin * n / -log(alpha) : NAN;
 }
 
-static double from_logit(double s)
-{
-    return 1 / (1 + exp(-s));
-}
+static double from_logit(double s) { return 1 / (1 + exp(-s)); }
 
 lc_interval lc_clopper_pearson(double k, double n, double alpha)
 {

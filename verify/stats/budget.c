@@ -23,15 +23,9 @@ double lc_budget_row_pass(const lc_budget *b)
 }
 
 /* Moves on in a buffer that may be too short, as snprintf would. */
-static char *rest(char *text, size_t size, int length)
-{
-    return (size_t)length < size ? text + length : NULL;
-}
+static char *rest(char *text, size_t size, int length) { return (size_t)length < size ? text + length : NULL; }
 
-static size_t rest_size(size_t size, int length)
-{
-    return (size_t)length < size ? size - (size_t)length : 0;
-}
+static size_t rest_size(size_t size, int length) { return (size_t)length < size ? size - (size_t)length : 0; }
 
 int lc_budget_text(char *text, size_t size, const lc_budget *b, int width, int height)
 {
@@ -63,10 +57,7 @@ lc_looks lc_looks_plan(uint64_t least, uint64_t most)
     return looks;
 }
 
-uint64_t lc_looks_samples(const lc_looks *looks, int k)
-{
-    return looks->first << (2 * k);
-}
+uint64_t lc_looks_samples(const lc_looks *looks, int k) { return looks->first << (2 * k); }
 
 double lc_samples_needed(double c, double margin, double z)
 {

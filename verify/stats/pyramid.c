@@ -101,10 +101,7 @@ static void guard(const visit_state *state, int level, lc_student *student)
             student->skew[side] = fmax(student->skew[side], state->level[level].pooled[side]);
 }
 
-static int side_of(const lc_student *s)
-{
-    return s->difference < 0 ? LC_LOW : LC_HIGH;
-}
+static int side_of(const lc_student *s) { return s->difference < 0 ? LC_LOW : LC_HIGH; }
 
 static double tile_log_p(const visit_state *state, const lc_tile *tile)
 {

@@ -14,16 +14,10 @@ static const double TINY = 1e-300; /* keeps Lentz's quotients from 0 / 0 */
 enum { FRACTION_STEPS = 1000000 }; /* beta needs O(sqrt(a + b)) */
 static const double FRACTION_ERROR = 1e-15;
 
-static int is_probability(double alpha)
-{
-    return alpha > 0 && alpha < 1;
-}
+static int is_probability(double alpha) { return alpha > 0 && alpha < 1; }
 
 /* ln(1 - exp(x)), x <= 0, without cancellation (Maechler 2012). */
-static double log_complement(double x)
-{
-    return x > -LN2 ? log(-expm1(x)) : log1p(-exp(x));
-}
+static double log_complement(double x) { return x > -LN2 ? log(-expm1(x)) : log1p(-exp(x)); }
 
 double lc_normal_log_sf(double z)
 {
@@ -34,10 +28,7 @@ double lc_normal_log_sf(double z)
     return gsl_sf_log_erfc(z * sqrt(0.5)) - LN2;
 }
 
-double lc_normal_quantile(double alpha)
-{
-    return is_probability(alpha) ? gsl_cdf_ugaussian_Qinv(alpha) : NAN;
-}
+double lc_normal_quantile(double alpha) { return is_probability(alpha) ? gsl_cdf_ugaussian_Qinv(alpha) : NAN; }
 
 /* The continued fraction of DLMF 8.17.22 by Lentz's method as modified by Thompson and Barnett (1986). */
 static double beta_fraction(double x, double a, double b)
@@ -187,12 +178,6 @@ double lc_sidak_level(double alpha, double m)
     return alpha >= 0 && alpha <= 1 && m >= 1 ? -expm1(log1p(-alpha) / m) : NAN;
 }
 
-double lc_sidak_combine(double p, double m)
-{
-    return p >= 0 && p <= 1 && m >= 1 ? -expm1(m * log1p(-p)) : NAN;
-}
+double lc_sidak_combine(double p, double m) { return p >= 0 && p <= 1 && m >= 1 ? -expm1(m * log1p(-p)) : NAN; }
 
-double lc_bonferroni_combine(double p, double m)
-{
-    return p >= 0 && p <= 1 && m >= 1 ? fmin(1, m * p) : NAN;
-}
+double lc_bonferroni_combine(double p, double m) { return p >= 0 && p <= 1 && m >= 1 ? fmin(1, m * p) : NAN; }

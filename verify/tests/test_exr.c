@@ -221,7 +221,7 @@ END_TEST
 enum { UINT, HALF, FLOAT }; /* as in the format */
 
 struct spec {
-    const char *channels; /* sorted: "B1 G1 R1": name, type */
+    const char *channels;          /* sorted: "B1 G1 R1": name, type */
     int x, y, width, height, tile; /* tile 0: scan lines */
     int sampling;
 };
@@ -355,12 +355,12 @@ static struct bytes build(const struct spec *spec)
 }
 
 static const struct spec foreign[] = {
-    {"B1 G1 R1", 0, 0, 5, 4, 0, 1},                       /* half, as POV-Ray writes */
-    {"A2 B2 G2 R2 Z2", 0, 0, 5, 4, 0, 1},                 /* float, with more channels */
-    {"B2 G1 R2", -3, 7, 6, 3, 0, 1},                      /* mixed; a data window elsewhere */
-    {"B1 G1 R1", 0, 0, 21, 11, 8, 1},                     /* tiles, not all of them whole */
-    {"B2 G2 R2", 5, -9, 3, 2, 16, 1},                     /* a tile larger than the image */
-    {"B2 G2 R2 samples2", 0, 0, 3, 2, 0, 1},              /* `samples` that mean something else */
+    {"B1 G1 R1", 0, 0, 5, 4, 0, 1},          /* half, as POV-Ray writes */
+    {"A2 B2 G2 R2 Z2", 0, 0, 5, 4, 0, 1},    /* float, with more channels */
+    {"B2 G1 R2", -3, 7, 6, 3, 0, 1},         /* mixed; a data window elsewhere */
+    {"B1 G1 R1", 0, 0, 21, 11, 8, 1},        /* tiles, not all of them whole */
+    {"B2 G2 R2", 5, -9, 3, 2, 16, 1},        /* a tile larger than the image */
+    {"B2 G2 R2 samples2", 0, 0, 3, 2, 0, 1}, /* `samples` that mean something else */
 };
 
 START_TEST(images_of_others)
@@ -445,8 +445,9 @@ END_TEST
 /* Sizes that the header claims and the file cannot have. */
 START_TEST(absurd_sizes)
 {
-    static const uint32_t max[][2] = {{0x7fffffff, 3},  {4, 0x7fffffff},  {0x7fffffff, 0x7fffffff}, {0xffffffff, 3},
-                                      {LC_MAX_SIZE, 3}, {4, LC_MAX_SIZE - 1}, {LC_MAX_SIZE - 1, LC_MAX_SIZE - 1}};
+    static const uint32_t max[][2] = {
+        {0x7fffffff, 3},  {4, 0x7fffffff},      {0x7fffffff, 0x7fffffff},          {0xffffffff, 3},
+        {LC_MAX_SIZE, 3}, {4, LC_MAX_SIZE - 1}, {LC_MAX_SIZE - 1, LC_MAX_SIZE - 1}};
     struct spec spec = {"B1 G1 R1", 0, 0, 4, 4, 0, 1};
     struct bytes bytes = build(&spec);
     for (size_t i = 0; i < bytes.size; ++i)

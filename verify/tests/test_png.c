@@ -69,8 +69,8 @@ END_TEST
 START_TEST(known_values)
 {
     /* 0.5 -> 187.516 -> 188, 0.18 -> 117.65 -> 118, 0.0031308 -> 10.31 -> 10, 0.21586 -> 128 (standard, by hand) */
-    const double rgb[6][3] = {{0.5, 0.18, 0.0031308}, {0, 1, 2},       {-1, INFINITY, -INFINITY},
-                              {NAN, 0, 1},            {0.21586, 0, 0}, {1, 1, NAN}};
+    const double rgb[6][3] = {{0.5, 0.18, 0.0031308}, {0, 1, 2},  {-1, INFINITY, -INFINITY}, {NAN, 0, 1},
+                              {0.21586, 0, 0},        {1, 1, NAN}};
     ck_assert_int_eq(lc_png_write(target, 3, 2, rgb, 0, NULL), LC_OK);
     unsigned char *pixels = read_back(3, 2);
     ck_pixel(pixels, 188, 118, 10);

@@ -10,8 +10,8 @@
 
 #include "io/scene_read.h"
 
-#define FILM                                                                                                           \
-    "<film type='hdrfilm'><integer name='width' value='8'/><integer name='height' value='4'/><rfilter "                \
+#define FILM \
+    "<film type='hdrfilm'><integer name='width' value='8'/><integer name='height' value='4'/><rfilter " \
     "type='box'/></film>"
 #define SENSOR "<sensor type='perspective'>" FILM "</sensor>"
 #define SCENE(body) "<scene version='3.0.0'>\n" SENSOR "\n" body "</scene>"
@@ -189,7 +189,7 @@ START_TEST(twosided_has_a_back)
 }
 END_TEST
 
-#define CHECKER(name, more)                                                                                            \
+#define CHECKER(name, more) \
     "<texture type='checkerboard' name='" name "'><rgb name='color0' value='.2 .4 .6'/>" more "</texture>"
 
 START_TEST(checkerboards)
@@ -323,7 +323,7 @@ END_TEST
 #define BLEND(weight, a, b) RECTANGLE("<bsdf type='blendbsdf'>" weight a b "</bsdf>")
 #define W "<float name='weight' value='.5'/>"
 #define GLASS(n) "<bsdf type='dielectric'><float name='int_ior' value='" n "'/></bsdf>"
-#define CAMERA(properties, film)                                                                                       \
+#define CAMERA(properties, film) \
     "<scene version='3.0.0'><sensor type='perspective'>" properties film "</sensor></scene>"
 #define SIZE(w) "<film type='hdrfilm'><integer name='width' value='" w "'/><rfilter type='box'/></film>"
 

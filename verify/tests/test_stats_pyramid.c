@@ -206,22 +206,10 @@ END_TEST
  * ------------------------------------------------------------------------------------------------------------ */
 
 typedef double draw(uint64_t *state);
-static double exponential(uint64_t *state)
-{
-    return -log(1 - next(state));
-}
-static double lognormal(uint64_t *state)
-{
-    return exp(0.7 * normal(state) - 0.245);
-}
-static double coin(uint64_t *state)
-{
-    return next(state) < 0.05 ? 20 : 0;
-}
-static double flat(uint64_t *state)
-{
-    return 2 * next(state);
-}
+static double exponential(uint64_t *state) { return -log(1 - next(state)); }
+static double lognormal(uint64_t *state) { return exp(0.7 * normal(state) - 0.245); }
+static double coin(uint64_t *state) { return next(state) < 0.05 ? 20 : 0; }
+static double flat(uint64_t *state) { return 2 * next(state); }
 
 /* All of mean 1; skewness 0, 2, 2.9, 4.1. At alpha = 0.05 for false FAILs of a 4 x 4 image, against the truth or
  * another film. */

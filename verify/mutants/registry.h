@@ -2,8 +2,8 @@
  *
  * Estimators that are wrong on purpose: the harness must find each.
  */
-#ifndef LC_MUTANTS_H
-#define LC_MUTANTS_H
+#ifndef LC_MUTANTS_REGISTRY_H
+#define LC_MUTANTS_REGISTRY_H
 
 #include "lightcheck.h"
 
