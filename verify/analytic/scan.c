@@ -12,6 +12,8 @@
 /* Goals, relative to what the lamp gives unhidden. */
 #define SCAN_LAMP 1e-11
 #define SCAN_HIDDEN 1e-11
+/* ... but of a form factor, which is a share of 1, never less than this: slivers at the horizon cannot be had relative to themselves. */
+#define SCAN_FLOOR 1e-13
 
 struct scan {
     const lc_body *lamp;
@@ -97,7 +99,8 @@ static lc_status integrate(double *out, struct scan *scan, const double *phi, in
         double piece;
         if (!(phi[i] < phi[i + 1]))
             continue;
-        lc_status status = lc_quadrature(&piece, visible_at, scan, phi[i], phi[i + 1], absolute / count, 0, err);
+        lc_status status = lc_quadrature(&piece, visible_at, scan, phi[i], phi[i + 1],
+                                          fmax(absolute, SCAN_FLOOR) / count, 0, err);
         if (status)
             return status;
         *out += piece;
