@@ -7,32 +7,37 @@ CFLAGS  ?= -O2 -g
 BUILD   ?= build
 PKGCONF ?= pkg-config
 
-# What the build needs, and the flags it gives. Each missing piece is named with its Debian package.
+# What the build needs. One call of the preprocessor finds which headers are missing, and which Embree is there.
 
-have = $(shell $(CC) -E -include $(1) -x c /dev/null >/dev/null 2>&1 && echo yes)
-need_header = $(if $(call have,$(1)),,$(error missing header $(1): install $(2), or run ./setup.sh, which installs all that lightcheck needs))
+NEEDS := stdio.h=libc6-dev OpenEXR/openexr.h=libopenexr-dev png.h=libpng-dev expat.h=libexpat1-dev \
+         jansson.h=libjansson-dev gsl/gsl_cdf.h=libgsl-dev Random123/philox.h=librandom123-dev
+ifneq ($(filter needs check asan-check $(BUILD)/tests,$(MAKECMDGOALS)),)
+NEEDS += check.h=check
+CHECK_LIBS = $(shell $(PKGCONF) --libs check 2>/dev/null || echo -lcheck -lsubunit -lrt)
+endif
 
-ifneq ($(filter-out clean help lint,$(or $(MAKECMDGOALS),all)),)
-$(if $(shell command -v $(CC) 2>/dev/null),,$(error missing compiler $(CC): install gcc, or run ./setup.sh, which installs all that lightcheck needs))
-ifeq ($(call have,embree4/rtcore.h),yes)
-EMBREE_LIBS := -lembree4
-NEEDS_CFLAGS := -DLC_EMBREE=4
-else
-$(call need_header,embree3/rtcore.h,libembree-dev)
-EMBREE_LIBS := -lembree3
-NEEDS_CFLAGS := -DLC_EMBREE=3
+ifneq ($(filter-out clean help lint fresh,$(or $(MAKECMDGOALS),all)),)
+SETUP := or run ./setup.sh, which installs all that lightcheck needs
+ifeq ($(shell command -v $(firstword $(CC)) 2>/dev/null),)
+$(error missing compiler $(firstword $(CC)): install gcc, $(SETUP))
 endif
-$(call need_header,OpenEXR/openexr.h,libopenexr-dev)
-$(call need_header,png.h,libpng-dev)
-$(call need_header,expat.h,libexpat1-dev)
-$(call need_header,jansson.h,libjansson-dev)
-$(call need_header,gsl/gsl_cdf.h,libgsl-dev)
-$(call need_header,Random123/philox.h,librandom123-dev)
-ifneq ($(filter check asan-check,$(MAKECMDGOALS)),)
-$(call need_header,check.h,check)
-CHECK_LIBS := $(shell $(PKGCONF) --libs check 2>/dev/null || echo -lcheck -lsubunit -lrt)
+H := \#
+header  = $(firstword $(subst =, ,$(1)))
+package = $(lastword $(subst =, ,$(1)))
+FOUND := $(subst ",,$(shell printf '%s\n' \
+    '$Hif __has_include(<embree4/rtcore.h>)' '"embree4"' '$Helif __has_include(<embree3/rtcore.h>)' '"embree3"' \
+    '$Helse' '"missing=embree3/rtcore.h=libembree-dev"' '$Hendif' \
+    $(foreach n,$(NEEDS),'$Hif !__has_include(<$(call header,$n)>)' '"missing=$n"' '$Hendif') \
+    | $(CC) $(CFLAGS) -E -P -x c -))
+ifeq ($(FOUND),)
+$(error $(CC) -E failed: install gcc, $(SETUP))
 endif
-NEEDS_LIBS := $(EMBREE_LIBS) -lOpenEXRCore -lpng -lexpat -ljansson -lgsl -lgslcblas
+MISSING := $(patsubst missing=%,%,$(filter missing=%,$(FOUND)))
+ifneq ($(MISSING),)
+$(error missing $(foreach n,$(MISSING),$(call header,$n)): install $(foreach n,$(MISSING),$(call package,$n)), $(SETUP))
+endif
+NEEDS_CFLAGS := -DLC_EMBREE=$(patsubst embree%,%,$(FOUND))
+NEEDS_LIBS   := -l$(FOUND) -lOpenEXRCore -lpng -lexpat -ljansson -lgsl -lgslcblas
 endif
 
 WARN := -std=c99 -pedantic -Wall -Wextra -Wshadow -Wconversion -Wmissing-prototypes -Wvla -Wstrict-prototypes
@@ -52,14 +57,14 @@ LIB  := $(patsubst %.c,$(BUILD)/obj/%.o,$(filter-out estimators/template.c,$(wil
 CLI  := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard src/cli/*.c))
 TEST := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard verify/tests/*.c))
 
-.PHONY: all check verify lint asan-check format clean help
+.PHONY: all check verify lint asan-check needs fresh clean help
 all: $(BUILD)/lightcheck $(BUILD)/obj/estimators/template.o ## build the program
 
 $(BUILD)/lightcheck: $(CLI) $(LIB)
 	$(CC) $(LDFLAGS) -o $@ $^ $(ALL_LIBS)
 
 $(BUILD)/tests: $(TEST) $(LIB)
-	$(CC) $(LDFLAGS) -o $@ $^ $(ALL_LIBS) $(CHECK_LIBS)
+	$(CC) $(LDFLAGS) -o $@ $^ $(CHECK_LIBS) $(ALL_LIBS)
 
 $(BUILD)/obj/verify/tests/%.o: ALL_CFLAGS += $(CHECK_CFLAGS)
 $(BUILD)/obj/%.o: %.c $(BUILD)/flags
@@ -81,8 +86,15 @@ check: all $(BUILD)/tests ## run the unit and command-line tests
 asan-check: ## the same under the address and undefined-behaviour sanitizers
 	$(MAKE) BUILD=$(BUILD)/asan SANITIZE=address,undefined CFLAGS='-O1 -g' check
 
-lint: ## dependencies between folders run one way
-	sh verify/tests/lint.sh
+lint: ## dependencies between folders run one way, and other rules that a compiler does not know
+	@sh verify/tests/lint.sh
+	@sh verify/tests/lint_selftest.sh
+
+needs: ## say what is missing, if anything is
+	@:
+
+fresh: ## the two commands of the README in a new minimal Debian 12 (root, debootstrap)
+	@sh verify/tests/fresh.sh
 
 clean: ## remove what was built
 	rm -rf $(BUILD)

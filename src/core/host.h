@@ -47,7 +47,7 @@ typedef struct lc_affine {
 
 lc_affine lc_affine_identity(void);
 lc_affine lc_affine_multiply(const lc_affine *a, const lc_affine *b); /* a after b */
-int lc_affine_invert(lc_affine *out, const lc_affine *a);            /* 0 when singular */
+int lc_affine_invert(lc_affine *out, const lc_affine *a);             /* 0 when singular */
 double lc_affine_determinant(const lc_affine *a);
 lc_vec3 lc_affine_point(const lc_affine *a, lc_vec3 p);
 lc_vec3 lc_affine_vector(const lc_affine *a, lc_vec3 v);
@@ -70,9 +70,9 @@ typedef struct lc_side {
 } lc_side;
 
 typedef struct lc_material_desc {
-    char id[64];      /* "" when it has none */
-    int line;         /* in the scene's file */
-    lc_side side[2];  /* front (where the normal points), back */
+    char id[64];             /* "" when it has none */
+    int line;                /* in the scene's file */
+    lc_side side[2];         /* front (where the normal points), back */
     double int_ior, ext_ior; /* of the glass lobe: behind and before the surface */
 } lc_material_desc;
 
@@ -84,8 +84,8 @@ typedef struct lc_shape_desc {
     lc_shape_kind kind;
     lc_affine to_world; /* a sphere's: rotation, uniform scale and translation only */
     int flip_normals;
-    int material;     /* index into materials */
-    int emits;        /* 1: an area light, */
+    int material;        /* index into materials */
+    int emits;           /* 1: an area light, */
     lc_texture radiance; /* of this radiance [W sr^-1 m^-2], on the side of the normal */
     int line;
 } lc_shape_desc;
@@ -148,15 +148,18 @@ enum { LC_MAX_SIZE = 16384 }; /* largest width or height */
 lc_status lc_scene_build(lc_scene **out, const lc_scene_desc *desc, lc_error *err);
 void lc_scene_free(lc_scene *scene);
 const lc_scene_desc *lc_scene_description(const lc_scene *scene);
-unsigned lc_scene_lobes(const lc_scene *scene);    /* LC_DIFFUSE | ... that occur */
-unsigned lc_scene_emitters(const lc_scene *scene); /* LC_AREA | ... that occur and are not black */
+unsigned lc_scene_lobes(const lc_scene *scene);       /* LC_DIFFUSE | ... that occur */
+unsigned lc_scene_emitters(const lc_scene *scene);    /* LC_AREA | ... that occur and are not black */
 double lc_scene_emitting_area(const lc_scene *scene); /* m^2 */
 
 /* The first hit of a ray, or a miss (valid = 0, wo and time set). */
 void lc_intersect(const lc_scene *scene, const lc_ray *ray, lc_hit *hit);
 
-/* The ray through (x, y) of an image of width x height pixels, x to the right and y downwards from the upper left corner. */
+/* The ray through (x, y) of an image of width x height pixels, x to the right and y downwards from the upper left corner; it starts
+ * at the near clip. */
 lc_ray lc_camera_ray(const lc_camera_desc *camera, int width, int height, double x, double y);
+/* What that ray sees first: like lc_intersect, but a hit beyond the far clip is a miss. */
+void lc_camera_see(const lc_scene *scene, const lc_ray *ray, lc_hit *hit);
 
 /* ---- sampler --------------------------------------------------------------------------------------------- */
 
@@ -165,7 +168,7 @@ lc_ray lc_camera_ray(const lc_camera_desc *camera, int width, int height, double
 struct lc_sampler {
     uint64_t seed;
     uint32_t arm, pixel, sample, dimension;
-    uint32_t block[4];
+    uint32_t block[4], loaded;      /* numbers of block `loaded` */
     const struct lc_trace_log *log; /* NULL: nobody listens */
 };
 
@@ -181,10 +184,10 @@ uint32_t lc_arm(const char *name);
 enum { LC_BLOCK = 64 }; /* samples of a batch; films grow bit-exactly at multiples of it */
 
 typedef struct lc_moments {
-    double mean; /* of the samples */
-    double m2;   /* sum of (x - mean)^2 */
-    double m3;   /* sum of (x - mean)^3 */
-    double max;  /* largest sample */
+    double mean;                 /* of the samples */
+    double m2;                   /* sum of (x - mean)^2 */
+    double m3;                   /* sum of (x - mean)^3 */
+    double max;                  /* largest sample */
     double batch_mean, batch_m2; /* mean and sum of squares of the means of whole batches of LC_BLOCK samples */
 } lc_moments;
 
@@ -194,6 +197,15 @@ typedef struct lc_pixel {
     lc_moments c[3];  /* R G B */
 } lc_pixel;
 
+enum { LC_MAX_SHARDS = 1024 };
+
+/* Samples [first, first + count) of one stream. */
+typedef struct lc_range {
+    uint64_t seed;
+    uint32_t arm;
+    uint64_t first, count;
+} lc_range;
+
 typedef struct lc_film {
     int width, height;
     lc_pixel *pixels; /* row by row from the top */
@@ -201,24 +213,31 @@ typedef struct lc_film {
     char scene[64], estimator[64];
     uint64_t seed;
     uint32_t arm;
-    uint64_t first, count;          /* sample indices [first, first + count) */
+    uint64_t first, count; /* sample indices [first, first + count) */
     int min_bounces, max_bounces;
-    int shard, shards;              /* shard of shards, 0 <= shard < shards; 0 of 1 is everything */
-    uint64_t bad;                   /* NaN, infinite or negative samples: any is fatal to a check */
-    int bad_x, bad_y;               /* where the first (by pixel, then sample) was seen */
+    lc_range *more; /* further ranges that were merged in, NULL when none; owned by the film */
+    int more_count;
+    int shard, shards; /* shard of shards, 0 <= shard < shards <= LC_MAX_SHARDS; 0 of 1 is everything */
+    uint64_t pasted[LC_MAX_SHARDS / 64]; /* bit i: shard i is here too; all 0 while `shard` is the only one */
+    uint64_t bad;                        /* NaN, infinite or negative samples: any is fatal to a check */
+    int bad_x, bad_y;                    /* where the first (by pixel, then sample) was seen */
     uint64_t bad_sample;
     double bad_value[3];
 } lc_film;
 
+/* A black film without samples, shard 0 of 1; width and height in [1, LC_MAX_SIZE], else LC_BAD_INPUT. */
 lc_status lc_film_create(lc_film **out, int width, int height, lc_error *err);
 void lc_film_free(lc_film *film);
 /* Adds a block of 1..LC_BLOCK consecutive samples of one pixel; exact merging of central moments (Pebay 2008, SAND2008-6212). */
 void lc_pixel_add(lc_pixel *pixel, const double (*samples)[3], int count);
-/* Central moments of the union of two disjoint sets. */
+/* Central moments of the union of two disjoint sets; a side with n = 0 adds nothing. */
 void lc_pixel_merge(lc_pixel *into, const lc_pixel *from);
 /* Variance of the mean, m2 / (n (n - 1)); 0 for n < 2. */
 double lc_pixel_variance(const lc_pixel *pixel, int channel);
-/* Pastes shards of one render, or averages renders of different streams, weighted by n. Refuses different sizes, scenes, bounces, and overlapping sample ranges of the same stream. */
+/* Pastes shards of one render (with the last of them it is 0 of 1), or averages whole renders of different streams or
+ * ranges, weighted by n. LC_BAD_INPUT, and `into` untouched, for different sizes, scenes, estimators or bounces, a
+ * shard or sample that both have, a film of unknown samples (count = 0). Third moments, max and batches survive only when
+ * both have them. */
 lc_status lc_film_merge(lc_film *into, const lc_film *from, lc_error *err);
 /* Tiles of LC_TILE^2 pixels, row by row, are what threads and shards share out. Tile t belongs to shard t mod shards. */
 enum { LC_TILE = 8 };
@@ -229,16 +248,17 @@ typedef struct lc_render_options {
     int min_bounces, max_bounces;
     uint64_t seed;
     uint32_t arm;
-    uint64_t first, count; /* sample indices */
-    int threads;           /* 0: one a core */
-    int shard, shards;     /* shards = 0 or 1: everything */
+    uint64_t first, count;                     /* sample indices */
+    int threads;                               /* 0: one a core */
+    int shard, shards;                         /* shards = 0 or 1: everything */
     void (*progress)(void *user, double done); /* may be NULL; 0..1, from one thread */
     void *user;
 } lc_render_options;
 
 /* Adds samples [first, first + count) of every pixel (of the shard) to the film. The result depends on scene, estimator, options but not on
  * the number of threads. The film's size decides the image's. */
-lc_status lc_render(lc_film *film, const lc_scene *scene, const lc_estimator *estimator, const lc_render_options *options, lc_error *err);
+lc_status lc_render(lc_film *film, const lc_scene *scene, const lc_estimator *estimator,
+                    const lc_render_options *options, lc_error *err);
 
 /* ---- replay: one sample, told step by step ------------------------------------------------------------------------ */
 
@@ -248,7 +268,7 @@ typedef struct lc_trace_log {
 } lc_trace_log;
 
 /* The radiance of one sample, exactly as lc_render sees it; each draw, hit, light sample and value goes to the log. One thread. */
-lc_rgb lc_replay(lc_scene *scene, const lc_estimator *estimator, const lc_render_options *options, int width, int height, int x, int y,
-                 uint64_t sample, const lc_trace_log *log);
+lc_rgb lc_replay(lc_scene *scene, const lc_estimator *estimator, const lc_render_options *options, int width,
+                 int height, int x, int y, uint64_t sample, const lc_trace_log *log);
 
 #endif

@@ -41,7 +41,9 @@ typedef struct lc_rgb {
 static inline lc_vec3 lc_vec(double x, double y, double z)
 {
     lc_vec3 v;
-    v.x = x, v.y = y, v.z = z;
+    v.x = x;
+    v.y = y;
+    v.z = z;
     return v;
 }
 static inline lc_vec3 lc_add(lc_vec3 a, lc_vec3 b) { return lc_vec(a.x + b.x, a.y + b.y, a.z + b.z); }
@@ -59,7 +61,9 @@ static inline lc_vec3 lc_normalize(lc_vec3 a) { return lc_scale(1.0 / lc_length(
 static inline lc_rgb lc_color(double r, double g, double b)
 {
     lc_rgb c;
-    c.r = r, c.g = g, c.b = b;
+    c.r = r;
+    c.g = g;
+    c.b = b;
     return c;
 }
 static inline lc_rgb lc_black(void) { return lc_color(0, 0, 0); }
@@ -86,7 +90,6 @@ typedef struct lc_hit {
     double distance; /* from there [m] */
     double time;     /* the ray's */
     int shape, part; /* the host's own: which surface this is */
-    double u, v;     /* surface parameters */
 } lc_hit;
 
 /* What the surface is made of, as seen from the side of `wo`. The lobes add up (a blend has several).
@@ -164,9 +167,9 @@ typedef struct lc_options {
 typedef lc_rgb lc_radiance_fn(const lc_scene *scene, const lc_ray *ray, const lc_hit *hit, const lc_options *options,
                               lc_sampler *sampler);
 
-enum { LC_DIFFUSE = 1, LC_MIRROR = 2, LC_GLASS = 4 };                /* lobes an estimator follows */
+enum { LC_DIFFUSE = 1, LC_MIRROR = 2, LC_GLASS = 4 };               /* lobes an estimator follows */
 enum { LC_AREA = 1, LC_POINT = 2, LC_DIRECTIONAL = 4, LC_SKY = 8 }; /* emitters it can reach */
-enum { LC_UNBOUNDED = 1 << 20 };                                     /* max_bounces of an estimator without a limit */
+enum { LC_UNBOUNDED = 1 << 20 };                                    /* max_bounces of an estimator without a limit */
 
 typedef struct lc_estimator {
     int abi;                  /* LC_ABI */

@@ -52,7 +52,7 @@ double lc_disk_factor(double radius, double offset, double h);
  * t0) dphi, the integral of cos over solid angle in polar coordinates about n, t0 and t1 where the ellipse begins and
  * ends. */
 lc_status lc_ellipse_factor(double *factor, lc_vec3 centre, lc_vec3 axis1, lc_vec3 axis2, lc_vec3 p, lc_vec3 n,
-                           lc_error *err);
+                            lc_error *err);
 
 /* F of a sphere of `radius` >= 0, receiver outside (on the sphere: its tangent plane's half-space; inside: 0, the
  * sphere emits outward). H = d/R, t the angle between n and the centre. F = cos t / H^2 for cos t >= 1/H; 0 for cos t

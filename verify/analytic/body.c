@@ -31,10 +31,7 @@ static lc_body body_of(lc_body_kind kind, int shape)
     return body;
 }
 
-lc_body lc_body_sky(void)
-{
-    return body_of(LC_BODY_SKY, -1);
-}
+lc_body lc_body_sky(void) { return body_of(LC_BODY_SKY, -1); }
 
 lc_body lc_body_polygon(const lc_receiver *receiver, const lc_vec3 *corners, int count, int shape)
 {
@@ -255,10 +252,14 @@ static int ball_interval(const lc_body *body, double c, double s, double q[2])
 int lc_body_interval(const lc_body *body, double cos_phi, double sin_phi, double q[2])
 {
     switch (body->kind) {
-    case LC_BODY_POLYGON: return polygon_interval(body, cos_phi, sin_phi, q);
-    case LC_BODY_ELLIPSE: return ellipse_interval(body, cos_phi, sin_phi, q);
-    case LC_BODY_BALL: return ball_interval(body, cos_phi, sin_phi, q);
-    case LC_BODY_SKY: break;
+    case LC_BODY_POLYGON:
+        return polygon_interval(body, cos_phi, sin_phi, q);
+    case LC_BODY_ELLIPSE:
+        return ellipse_interval(body, cos_phi, sin_phi, q);
+    case LC_BODY_BALL:
+        return ball_interval(body, cos_phi, sin_phi, q);
+    case LC_BODY_SKY:
+        break;
     }
     q[0] = 0, q[1] = 1;
     return 1;

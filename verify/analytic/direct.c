@@ -26,16 +26,10 @@ struct direct {
 
 /* Image of a local axis, or with k = 3 of the origin. Not lc_affine_*: a closed form shares no code with what it
  * judges. */
-static lc_vec3 column(const lc_affine *a, int k)
-{
-    return lc_vec(a->m[0][k], a->m[1][k], a->m[2][k]);
-}
+static lc_vec3 column(const lc_affine *a, int k) { return lc_vec(a->m[0][k], a->m[1][k], a->m[2][k]); }
 
 /* 1 when the map mirrors: then the image of a right-handed pair of axes turns the other way round. */
-static int mirrors(const lc_affine *a)
-{
-    return lc_dot(lc_cross(column(a, 0), column(a, 1)), column(a, 2)) < 0;
-}
+static int mirrors(const lc_affine *a) { return lc_dot(lc_cross(column(a, 0), column(a, 1)), column(a, 2)) < 0; }
 
 /* The rectangle centre + s a + t b over [s0, s1] x [t0, t1], emitting along a x b or, `turned`, against it. */
 static lc_body quad(const struct direct *direct, int shape, lc_vec3 centre, lc_vec3 a, lc_vec3 b, const double s[2],
@@ -139,10 +133,7 @@ static lc_status gather_bodies(struct direct *direct)
 
 /* ---- lamps ------------------------------------------------------------------------------------------------------ */
 
-static int is_black(lc_rgb c)
-{
-    return !(c.r != 0 || c.g != 0 || c.b != 0);
-}
+static int is_black(lc_rgb c) { return !(c.r != 0 || c.g != 0 || c.b != 0); }
 
 static lc_status factor_alone(double *factor, const struct direct *direct, const lc_body *lamp)
 {
@@ -284,10 +275,18 @@ static lc_status add_shapes(struct direct *direct)
         if (!direct->desc->shapes[i].emits)
             continue;
         switch (direct->desc->shapes[i].kind) {
-        case LC_RECTANGLE: status = add_rectangle(direct, i); break;
-        case LC_DISK: status = add_disk(direct, i); break;
-        case LC_CUBE: status = add_cube(direct, i); break;
-        case LC_SPHERE: status = add_sphere(direct, i); break;
+        case LC_RECTANGLE:
+            status = add_rectangle(direct, i);
+            break;
+        case LC_DISK:
+            status = add_disk(direct, i);
+            break;
+        case LC_CUBE:
+            status = add_cube(direct, i);
+            break;
+        case LC_SPHERE:
+            status = add_sphere(direct, i);
+            break;
         }
         if (status)
             return status;

@@ -7,15 +7,9 @@
 
 #include "verify/analytic/body.h"
 
-double lc_lambert_radiance(double flux, double area)
-{
-    return flux / (LC_PI * area);
-}
+double lc_lambert_radiance(double flux, double area) { return flux / (LC_PI * area); }
 
-double lc_lambert_reflected(double rho, double irradiance)
-{
-    return rho * irradiance / LC_PI;
-}
+double lc_lambert_reflected(double rho, double irradiance) { return rho * irradiance / LC_PI; }
 
 double lc_point_irradiance(double intensity, lc_vec3 light, lc_vec3 p, lc_vec3 n)
 {
@@ -29,15 +23,9 @@ double lc_directional_irradiance(double facing, lc_vec3 direction, lc_vec3 n)
     return facing * fmax(0, -lc_dot(direction, n));
 }
 
-double lc_sky_irradiance(double radiance)
-{
-    return LC_PI * radiance;
-}
+double lc_sky_irradiance(double radiance) { return LC_PI * radiance; }
 
-double lc_reciprocal_factor(double factor12, double area1, double area2)
-{
-    return area1 * factor12 / area2;
-}
+double lc_reciprocal_factor(double factor12, double area1, double area2) { return area1 * factor12 / area2; }
 
 double lc_wall_factor(double elevation)
 {

@@ -23,10 +23,7 @@ static double smoothed_value(double t, void *user)
     return s->f(s->a + s->width * t * t * (3 - 2 * t), s->user) * s->width * 6 * t * (1 - t);
 }
 
-static void silence(void)
-{
-    gsl_set_error_handler_off();
-}
+static void silence(void) { gsl_set_error_handler_off(); }
 
 void lc_gsl_silence(void)
 {

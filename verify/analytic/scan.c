@@ -130,7 +130,7 @@ cleanup:
 }
 
 lc_status lc_ellipse_factor(double *factor, lc_vec3 centre, lc_vec3 axis1, lc_vec3 axis2, lc_vec3 p, lc_vec3 n,
-                           lc_error *err)
+                            lc_error *err)
 {
     lc_receiver receiver = lc_receiver_at(p, n);
     lc_body body = lc_body_ellipse(&receiver, centre, axis1, axis2, 0);

@@ -11,7 +11,7 @@
 #define ASSERT_CLOSE(a, b, tol) \
     do { \
         double a_ = (a), b_ = (b), off_ = fabs(a_ - b_), size_ = fmax(fabs(a_), fabs(b_)); \
-        ck_assert_msg(off_ <= (tol) * size_, "%s = %.17g, expected %.17g, off by %.2g", #a, a_, b_, off_ / size_); \
+        ck_assert_msg(off_ <= (tol)*size_, "%s = %.17g, expected %.17g, off by %.2g", #a, a_, b_, off_ / size_); \
     } while (0)
 
 /* In [0, 1); any generator will do here. */

@@ -219,8 +219,8 @@ START_TEST(sphere_limits)
 {
     lc_vec3 p = {0, 0, 0}, n = {0, 0, 1};
     ASSERT_CLOSE(lc_sphere_factor(lc_vec(0, 0, 5), 2, p, n), 4.0 / 25, 1e-15);
-    ck_assert(lc_sphere_factor(lc_vec(1, 0, -2), 2, p, n) == 0);        /* touches the horizon from below */
-    ck_assert(lc_sphere_factor(lc_vec(0, 0, 1), 2, p, n) == 0);         /* inside */
+    ck_assert(lc_sphere_factor(lc_vec(1, 0, -2), 2, p, n) == 0);          /* touches the horizon from below */
+    ck_assert(lc_sphere_factor(lc_vec(0, 0, 1), 2, p, n) == 0);           /* inside */
     ASSERT_CLOSE(lc_sphere_factor(lc_vec(2, 0, 0), 2, p, n), 0.5, 1e-15); /* on it, edge on */
     /* the three cases meet */
     double over = lc_sphere_factor(lc_vec(3, 0, 2 + 1e-9), 2, p, n);
@@ -320,8 +320,8 @@ static lc_rgb checker_at(const lc_texture *texture, double u, double v)
 
 START_TEST(checkerboard_over_a_sphere)
 {
-    const double scales[][4] = {{1, 1, 0, 0}, {2, 4, 0, 0}, {3, 2, 0.1, 0.3}, {-1.7, 2.3, 5.2, -3.1},
-                                {0, 1, 0.7, 0}, {8, 5, -0.25, 0.125}};
+    const double scales[][4] = {{1, 1, 0, 0},           {2, 4, 0, 0},   {3, 2, 0.1, 0.3},
+                                {-1.7, 2.3, 5.2, -3.1}, {0, 1, 0.7, 0}, {8, 5, -0.25, 0.125}};
     for (size_t i = 0; i < sizeof scales / sizeof scales[0]; ++i) {
         const double *s = scales[i];
         lc_texture texture = {1, {{1, 0.5, 0}, {0.25, 2, 1}}, {s[0], s[1]}, {s[2], s[3]}};

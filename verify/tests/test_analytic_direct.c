@@ -478,7 +478,8 @@ START_TEST(irradiance_is_linear_in_the_normal)
         }
         double det = lc_dot(n[0], lc_cross(n[1], n[2]));
         double expected = (lc_dot(n[3], lc_cross(n[1], n[2])) * f[0] + lc_dot(n[0], lc_cross(n[3], n[2])) * f[1] +
-                           lc_dot(n[0], lc_cross(n[1], n[3])) * f[2]) / det;
+                           lc_dot(n[0], lc_cross(n[1], n[3])) * f[2]) /
+                          det;
         ck_assert_msg(fabs(f[3] - expected) <= 1e-11 * alone, "case %d: %.15g, expected %.15g of %.15g", i, f[3],
                       expected, alone);
         partial += f[3] > 0.01 * alone && f[3] < 0.99 * alone;
@@ -517,8 +518,8 @@ START_TEST(room_matches_brute_force)
     add_scaled(s, LC_RECTANGLE, lc_vec(0.4, 0.3, -1), lc_vec(0, 0, 1.98), 5);
     add_scaled(s, LC_CUBE, lc_vec(0.3, 0.2, 0.4), lc_vec(0.4, 0.1, 0.4), 0);
     add_scaled(s, LC_SPHERE, lc_vec(0.3, 0.3, 0.3), lc_vec(-0.35, 0.2, 0.7), 0);
-    const lc_vec3 points[] = {{-0.5, -0.2, 0}, {0.05, 0.1, 0}, {-0.2, 0.5, 0},
-                              {-0.8, 0.6, 0}, {0.4, 0.1, 0.8}, {0.9, 0.05, 0}};
+    const lc_vec3 points[] = {{-0.5, -0.2, 0}, {0.05, 0.1, 0},  {-0.2, 0.5, 0},
+                              {-0.8, 0.6, 0},  {0.4, 0.1, 0.8}, {0.9, 0.05, 0}};
     int seen = 0;
     for (size_t i = 0; i < sizeof points / sizeof points[0]; ++i) {
         lc_vec3 p = points[i];

@@ -4,9 +4,24 @@
 #define LC_TESTS_H
 
 #include <check.h>
+#include <sys/types.h>
 
+/* Where the code under test is wrong, root could replace a device by a file: tests that write to /dev/full do it as
+ * nobody. Returns 0 when that cannot be had, and the test is to be left out; lc_test_restore_root() takes root back. */
+int lc_test_drop_root(uid_t *before);
+void lc_test_restore_root(uid_t before);
+
+Suite *lc_suite_affine(void);
+Suite *lc_suite_scene_read(void);
 Suite *lc_suite_status(void);
+Suite *lc_suite_film(void);
 Suite *lc_suite_analytic(void);
+Suite *lc_suite_outfile(void);
+Suite *lc_suite_exr(void);
+Suite *lc_suite_png(void);
+Suite *lc_suite_stats(void);
+Suite *lc_suite_stats_estimate(void);
+Suite *lc_suite_stats_pyramid(void);
 Suite *lc_suite_analytic_direct(void);
 
 #endif

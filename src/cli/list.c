@@ -1,0 +1,105 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <jansson.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/commands.h"
+#include "estimators/registry.h"
+#include "io/scene_path.h"
+#include "verify/checks/checks.h"
+#include "verify/mutants/registry.h"
+
+/* One item of a list; `detail` is what --json adds under "source". */
+typedef void item_fn(json_t *array, const char *name, const char *summary, const char *source);
+
+static void print_item(json_t *array, const char *name, const char *summary, const char *source)
+{
+    (void)array;
+    (void)source;
+    if (summary)
+        printf("%-24s %s\n", name, summary);
+    else
+        printf("%s\n", name);
+}
+
+static void add_item(json_t *array, const char *name, const char *summary, const char *source)
+{
+    json_t *item = json_pack("{s:s}", "name", name);
+    if (summary)
+        json_object_set_new(item, "summary", json_string(summary));
+    if (source)
+        json_object_set_new(item, "source", json_string(source));
+    json_array_append_new(array, item);
+}
+
+static void list_estimators(item_fn *item, json_t *array)
+{
+    for (const lc_estimator *const *e = lc_estimators; *e; ++e)
+        item(array, (*e)->name, (*e)->summary, (*e)->source);
+}
+
+static void list_checks(item_fn *item, json_t *array)
+{
+    for (const lc_check *const *c = lc_checks; *c; ++c)
+        item(array, (*c)->name, (*c)->summary, (*c)->source);
+}
+
+static void list_mutants(item_fn *item, json_t *array)
+{
+    for (const lc_mutant *m = lc_mutants; m->estimator; ++m)
+        item(array, m->estimator->name, m->estimator->summary, m->of);
+}
+
+static lc_status list_scenes(item_fn *item, json_t *array, lc_error *err)
+{
+    char **names;
+    int count;
+    lc_status status = lc_scene_names(&names, &count, err);
+    if (status != LC_OK)
+        return status;
+    for (int i = 0; i < count; ++i)
+        item(array, names[i], NULL, NULL);
+    lc_scene_names_free(names, count);
+    return LC_OK;
+}
+
+static int run(const lc_command *self, int argc, char **argv)
+{
+    int json = 0, status = LC_OK;
+    const lc_option options[] = {{0, "json", LC_OPT_FLAG, &json, NULL, "as a JSON array", 0, 0, NULL},
+                                 {0, NULL, LC_OPT_FLAG, NULL, NULL, NULL, 0, 0, NULL}};
+    lc_strings rest;
+    lc_error err;
+    lc_args_result read = lc_args_read(self, options, argc, argv, &rest);
+    if (read != LC_ARGS_OK) {
+        lc_strings_release(&rest);
+        return read == LC_ARGS_HELP ? LC_OK : LC_BAD_INPUT;
+    }
+    const char *what = rest.count == 1 ? rest.items[0] : "";
+    json_t *array = json ? json_array() : NULL;
+    item_fn *item = json ? add_item : print_item;
+    if (strcmp(what, "estimators") == 0)
+        list_estimators(item, array);
+    else if (strcmp(what, "checks") == 0)
+        list_checks(item, array);
+    else if (strcmp(what, "mutants") == 0)
+        list_mutants(item, array);
+    else if (strcmp(what, "scenes") == 0) {
+        if (list_scenes(item, array, &err) != LC_OK)
+            status = lc_complain(self, LC_BAD_INPUT, "%s", err.text);
+    } else {
+        status = lc_complain(self, LC_BAD_INPUT, "expected one of: estimators, scenes, checks, mutants");
+    }
+    if (json && status == LC_OK) {
+        json_dumpf(array, stdout, JSON_INDENT(2));
+        putchar('\n');
+    }
+    json_decref(array);
+    lc_strings_release(&rest);
+    return status;
+}
+
+const lc_command lc_command_list = {
+    "list", "estimators|scenes|checks|mutants [--json]", "what there is: one item a line, the name first", NULL, run,
+};

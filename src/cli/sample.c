@@ -1,0 +1,121 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cli/commands.h"
+
+typedef struct sample_arguments {
+    const char *estimator, *pixel, *size;
+    int bounces, gdb;
+    uint64_t index, seed;
+    lc_strings definitions;
+} sample_arguments;
+
+static void print_line(void *user, const char *text)
+{
+    (void)user;
+    printf("  %s\n", text);
+}
+
+static lc_status replay(const sample_arguments *a, const char *scene_name, lc_error *err)
+{
+    const lc_estimator *estimator;
+    lc_scene *scene = NULL;
+    int width, height, x, y;
+    lc_render_options options = {.seed = a->seed};
+    if (!a->estimator || !a->pixel)
+        return lc_fail(err, LC_BAD_INPUT, "-e NAME and --pixel X,Y say which sample");
+    lc_status status = lc_cli_find_estimator(&estimator, a->estimator, err);
+    if (status == LC_OK)
+        status = lc_cli_read_pair(&x, &y, a->pixel, ',', "--pixel", err);
+    if (status == LC_OK)
+        status = lc_cli_load_scene(&scene, scene_name, &a->definitions, err);
+    if (status != LC_OK)
+        return status;
+    width = lc_scene_description(scene)->width;
+    height = lc_scene_description(scene)->height;
+    status = lc_cli_bounces(&options.max_bounces, a->bounces, scene, estimator, err);
+    if (status == LC_OK && a->size)
+        status = lc_cli_read_pair(&width, &height, a->size, 'x', "--size", err);
+    if (status == LC_OK && (x >= width || y >= height))
+        status =
+            lc_fail(err, LC_BAD_INPUT, "--pixel %s: the image is %d x %d, counted from 0", a->pixel, width, height);
+    if (status == LC_OK && a->index >= UINT32_MAX)
+        status = lc_fail(err, LC_BAD_INPUT, "--index %llu: expected less than 2^32 - 1", (unsigned long long)a->index);
+    if (status == LC_OK) {
+        lc_trace_log log = {print_line, NULL};
+        options.arm = lc_arm(estimator->name);
+        printf("sample %llu of pixel %d,%d of %s (%dx%d), %s, bounces 0 to %d, seed %llu\n",
+               (unsigned long long)a->index, x, y, lc_scene_description(scene)->name, width, height, estimator->name,
+               options.max_bounces, (unsigned long long)a->seed);
+        lc_rgb c = lc_replay(scene, estimator, &options, width, height, x, y, a->index, &log);
+        printf("radiance (%.9g, %.9g, %.9g) W sr^-1 m^-2\n", c.r, c.g, c.b);
+    }
+    lc_scene_free(scene);
+    return status;
+}
+
+/* The same command again, under gdb, stopped where the estimator begins. */
+static int debug(const lc_command *self, int argc, char **argv)
+{
+    const char *command[64] = {"gdb", "-q",     "-ex",    "break lc_replay_begin", "-ex", "run",
+                               "-ex", "finish", "--args", "/proc/self/exe"};
+    char exe[4096];
+    int n = 10;
+    ssize_t length = readlink("/proc/self/exe", exe, sizeof exe - 1);
+    if (length > 0) {
+        exe[length] = 0;
+        command[9] = exe;
+    }
+    for (int i = 0; i < argc && n < 63; ++i)
+        if (strcmp(argv[i], "--gdb") != 0)
+            command[n++] = argv[i];
+    command[n] = NULL;
+    execvp("gdb", (char *const *)command);
+    return lc_complain(self, LC_FAULT, "--gdb: cannot run gdb; install the package gdb");
+}
+
+static int run(const lc_command *self, int argc, char **argv)
+{
+    sample_arguments a = {.bounces = -1, .seed = LC_DEFAULT_SEED};
+    const lc_option options[] = {
+        {'e', "estimator", LC_OPT_STRING, &a.estimator, "NAME", "estimator (see `lightcheck list estimators`)", 0, 0,
+         NULL},
+        {0, "pixel", LC_OPT_STRING, &a.pixel, "X,Y", "counted from 0,0, the upper left", 0, 0, NULL},
+        {0, "index", LC_OPT_UINT64, &a.index, "K", "which sample of the pixel; default 0", 0, 0, NULL},
+        {0, "seed", LC_OPT_UINT64, &a.seed, "N", "default 1", 0, 0, NULL},
+        {0, "bounces", LC_OPT_INT, &a.bounces, "N", "as for render", 0, LC_UNBOUNDED, NULL},
+        {0, "size", LC_OPT_STRING, &a.size, "WxH", "as for render", 0, 0, NULL},
+        {'D', "define", LC_OPT_LIST, &a.definitions, "NAME=VALUE", "value of a <default> of the scene", 0, 0, NULL},
+        {0, "gdb", LC_OPT_FLAG, &a.gdb, NULL, "under gdb, stopped before the estimator is called", 0, 0, NULL},
+        {0, NULL, LC_OPT_FLAG, NULL, NULL, NULL, 0, 0, NULL},
+    };
+    lc_strings rest;
+    lc_error err = {""};
+    int status = LC_BAD_INPUT;
+    lc_args_result read = lc_args_read(self, options, argc, argv, &rest);
+    if (read == LC_ARGS_HELP)
+        status = LC_OK;
+    else if (read == LC_ARGS_OK && rest.count != 1)
+        status = lc_complain(self, LC_BAD_INPUT,
+                             "expected one scene: a name (see `lightcheck list scenes`) or a path to an .xml file");
+    else if (read == LC_ARGS_OK && a.gdb)
+        status = debug(self, argc, argv);
+    else if (read == LC_ARGS_OK) {
+        status = (int)replay(&a, rest.items[0], &err);
+        if (status != LC_OK)
+            lc_complain(self, (lc_status)status, "%s", err.text);
+    }
+    lc_strings_release(&a.definitions);
+    lc_strings_release(&rest);
+    return status;
+}
+
+const lc_command lc_command_sample = {
+    "sample",
+    "SCENE -e NAME --pixel X,Y --index K [options]",
+    "replays one sample and prints each draw, hit and value",
+    NULL,
+    run,
+};

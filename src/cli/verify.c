@@ -1,0 +1,181 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "cli/commands.h"
+#include "io/outfile.h"
+#include "verify/judge/judge.h"
+
+typedef struct verify_arguments {
+    const char *suite, *estimator, *check, *scene, *seed, *format, *report;
+    double margin, budget;
+    int threads;
+} verify_arguments;
+
+static lc_status load_scene(lc_scene **out, const char *name, lc_error *err)
+{
+    return lc_cli_load_scene(out, name, NULL, err);
+}
+
+static void show_row(void *user, const lc_row *row, int done, int count)
+{
+    (void)user;
+    if (lc_cli_has_terminal())
+        fprintf(stderr, "\r\033[K[%d/%d] %s %s %s: %s%s", done, count, row->check, row->scene, row->estimator,
+                lc_row_verdict_name(row->verdict), done == count ? "\r\033[K" : "");
+}
+
+static lc_status read_seed(uint64_t *seed, const char *text, lc_error *err)
+{
+    char *end;
+    if (strcmp(text, "random") == 0) {
+        FILE *f = fopen("/dev/urandom", "rb");
+        size_t read = f ? fread(seed, sizeof *seed, 1, f) : 0;
+        if (f)
+            fclose(f);
+        return read == 1 ? LC_OK : lc_fail(err, LC_FAULT, "/dev/urandom: cannot draw a seed");
+    }
+    errno = 0;
+    unsigned long long number = strtoull(text, &end, 10);
+    if (end == text || *end || errno || text[0] == '-')
+        return lc_fail(err, LC_BAD_INPUT, "--seed: '%s' is neither `random` nor a whole number from 0 to 2^64 - 1",
+                       text);
+    *seed = number;
+    return LC_OK;
+}
+
+static lc_status check_names(const verify_arguments *a, lc_error *err)
+{
+    int known = !a->check;
+    for (const lc_check *const *c = lc_checks; *c; ++c)
+        known |= a->check && strcmp((*c)->name, a->check) == 0;
+    if (!known)
+        return lc_fail(err, LC_BAD_INPUT, "unknown check '%s'; `lightcheck list checks` names them", a->check);
+    known = !a->scene;
+    for (const char *const *s = lc_suite_scenes; *s; ++s)
+        known |= a->scene && strcmp(*s, a->scene) == 0;
+    if (!known)
+        return lc_fail(err, LC_BAD_INPUT, "--scene: '%s' is not in the suites", a->scene);
+    return LC_OK;
+}
+
+/* Writes one format, aside and renamed. */
+static lc_status write_format(const char *folder, const char *file, const lc_report *report, const char *format,
+                              lc_error *err)
+{
+    char path[4096];
+    lc_outfile *out;
+    snprintf(path, sizeof path, "%s/%s", folder, file);
+    lc_status status = lc_outfile_open(&out, path, err);
+    if (status != LC_OK)
+        return status;
+    if (strcmp(format, "json") == 0)
+        status = lc_report_json(lc_outfile_stream(out), report, err);
+    else if (strcmp(format, "junit") == 0)
+        lc_report_junit(lc_outfile_stream(out), report);
+    else
+        lc_report_text(lc_outfile_stream(out), report);
+    if (status == LC_OK)
+        return lc_outfile_commit(out, err);
+    lc_outfile_abort(out);
+    return status;
+}
+
+static lc_status write_folder(const char *folder, const lc_report *report, lc_error *err)
+{
+    if (mkdir(folder, 0777) != 0 && errno != EEXIST)
+        return lc_fail(err, LC_FAULT, "%s: cannot make the folder: %s", folder, strerror(errno));
+    lc_status status = write_format(folder, "report.txt", report, "text", err);
+    if (status == LC_OK)
+        status = write_format(folder, "report.json", report, "json", err);
+    if (status == LC_OK)
+        status = write_format(folder, "report.xml", report, "junit", err);
+    return status;
+}
+
+static lc_status verify(const verify_arguments *a, lc_error *err)
+{
+    lc_verify_options options;
+    lc_report report;
+    lc_verify_options_init(&options);
+    options.suite = lc_suite_find(a->suite);
+    options.margin = a->margin;
+    options.false_fail = options.false_pass = a->budget;
+    options.threads = a->threads;
+    options.check = a->check;
+    options.scene = a->scene;
+    options.on_row = show_row;
+    lc_status status = check_names(a, err);
+    if (status == LC_OK)
+        status = read_seed(&options.seed, a->seed, err);
+    if (status == LC_OK && a->estimator)
+        status = lc_cli_find_estimator(&options.estimator, a->estimator, err);
+    if (status != LC_OK)
+        return status;
+    status = lc_verify(&report, &options, load_scene, err);
+    if (status == LC_OK && report.count == 0)
+        status = lc_fail(err, LC_BAD_INPUT, "nothing to verify: no check applies to what was selected");
+    if (status == LC_OK && a->report)
+        status = write_folder(a->report, &report, err);
+    if (status == LC_OK) {
+        if (strcmp(a->format, "json") == 0)
+            status = lc_report_json(stdout, &report, err);
+        else if (strcmp(a->format, "junit") == 0)
+            lc_report_junit(stdout, &report);
+        else
+            lc_report_text(stdout, &report);
+    }
+    if (status == LC_OK)
+        status = lc_report_status(&report);
+    lc_report_release(&report);
+    return status;
+}
+
+static int run(const lc_command *self, int argc, char **argv)
+{
+    verify_arguments a = {.suite = "quick", .seed = "1", .format = "text", .budget = 1e-6};
+    const lc_option options[] = {
+        {0, "suite", LC_OPT_CHOICE, &a.suite, "quick|full", "margins 0.5% or 0.25% times max(1, c); default quick", 0,
+         0, "quick|full"},
+        {'e', "estimator", LC_OPT_STRING, &a.estimator, "NAME", "only this estimator, or a mutant", 0, 0, NULL},
+        {'c', "check", LC_OPT_STRING, &a.check, "CHECK", "only this kind (see `lightcheck list checks`)", 0, 0, NULL},
+        {0, "scene", LC_OPT_STRING, &a.scene, "SCENE", "only this scene of the suite", 0, 0, NULL},
+        {0, "margin", LC_OPT_NUMBER, &a.margin, "M", "relative, for estimators with c <= 1; default: the suite's", 0, 1,
+         NULL},
+        {0, "budget", LC_OPT_NUMBER, &a.budget, "P",
+         "probability of any false FAIL, and of any false PASS; default 1e-6", 0, 0.1, NULL},
+        {0, "seed", LC_OPT_STRING, &a.seed, "N|random", "default 1; printed, and reproduces the run", 0, 0, NULL},
+        {0, "threads", LC_OPT_INT, &a.threads, "N", "default: one a core; changes only the time", 1, 256, NULL},
+        {0, "format", LC_OPT_CHOICE, &a.format, "text|json|junit", "default text", 0, 0, "text|json|junit"},
+        {0, "report", LC_OPT_STRING, &a.report, "DIR", "writes all formats there, too", 0, 0, NULL},
+        {0, NULL, LC_OPT_FLAG, NULL, NULL, NULL, 0, 0, NULL},
+    };
+    lc_strings rest;
+    lc_error err = {""};
+    int status = LC_BAD_INPUT;
+    lc_args_result read = lc_args_read(self, options, argc, argv, &rest);
+    if (read == LC_ARGS_HELP)
+        status = LC_OK;
+    else if (read == LC_ARGS_OK && rest.count != 0)
+        status = lc_complain(self, LC_BAD_INPUT, "unexpected argument '%s'", rest.items[0]);
+    else if (read == LC_ARGS_OK) {
+        status = (int)verify(&a, &err);
+        if (err.text[0])
+            lc_complain(self, (lc_status)status, "%s", err.text);
+    }
+    lc_strings_release(&rest);
+    return status;
+}
+
+const lc_command lc_command_verify = {
+    "verify",
+    "[--suite quick|full] [-e NAME] [-c CHECK] [--scene SCENE] [options]",
+    "puts estimators to the test",
+    "PASS: shown equal to what is expected, within the margin. FAIL: shown different. UNDECIDED: the samples ran out, "
+    "which is no\n"
+    "pass. Exit status: 0 all PASS, 1 any FAIL, 3 any UNDECIDED. c is a sample's standard deviation over the mean.\n",
+    run,
+};

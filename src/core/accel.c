@@ -1,0 +1,449 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ *
+ * The only file that knows Embree (3.13 or 4).
+ *
+ * Embree works in single precision. Three measures keep that out of the results:
+ *  - It sees the scene moved to the origin and scaled by a power of two into [-1, 1]^3: absolute tolerances anywhere in it
+ *    mean the same at every scale, and a scene scaled by 2^k gives the same bits.
+ *  - It only finds WHICH flat face is hit; the point is then computed in double. Spheres and disks are user geometry, decided in double.
+ *  - A ray that leaves a round part knows it, and the root at its origin is divided out. A ray that leaves a face starts a distance
+ *    along the normal that bounds the rounding of the vertices, of the origin and of the intersection test: with |n_i| as weights, so
+ *    that a floor of 1 km lifts a point by no more than its own height's rounding. Tests count self-hits.
+ */
+#include <float.h>
+#include <stdlib.h>
+#include <string.h>
+
+#if LC_EMBREE == 4
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#include "core/scene_c.h"
+
+enum { FACES = 0, ROUNDS = 1 }; /* Embree's geometry IDs */
+
+/* Rounding errors in float units (2^-24) that a face's offset covers: vertex, origin and about six operations of the test. */
+#define SAFETY (8 * 0x1p-24)
+#define LEAST_OFFSET 0x1p-40
+
+struct lc_accel {
+    RTCDevice device;
+    RTCScene scene;
+    lc_vec3 center; /* unit space = (world - center) * scale */
+    double scale;
+    float (*vertices)[3]; /* four a face, in Embree's hands */
+    unsigned (*quads)[4];
+    double *offsets;  /* of each face, in unit space */
+    lc_round *rounds; /* in unit space */
+    int face_count, round_count;
+};
+
+/* What the callbacks for round parts need besides Embree's ray: the ray in double, in unit space. */
+typedef struct query {
+#if LC_EMBREE == 4
+    RTCRayQueryContext base; /* first, so that Embree's pointer is ours */
+#else
+    struct RTCIntersectContext base;
+#endif
+    const lc_accel *accel;
+    lc_vec3 o, d; /* d unit */
+    double t_max; /* of a segment */
+    int from, to; /* round parts at its ends, or -1 */
+    int hit;      /* round part hit, */
+    double t;     /* and where */
+} query;
+
+/* Nearest t in (0, t_max) where the ray meets the round part, or -1. */
+static double meet_sphere(const lc_round *sphere, const query *q, int is_from, int is_to)
+{
+    lc_vec3 oc = lc_sub(q->o, sphere->o);
+    double b = lc_dot(oc, q->d);
+    double root[2]; /* in increasing order */
+    if (is_from) {  /* one root is 0 and does not count */
+        root[0] = -1.0;
+        root[1] = -2.0 * b;
+    } else {
+        double r = sphere->radius;
+        lc_vec3 l = lc_sub(oc, lc_scale(b, q->d)); /* from the center to the ray's nearest point */
+        double discriminant = r * r - lc_dot(l, l);
+        if (discriminant < 0)
+            return -1.0;
+        double far = -b - copysign(sqrt(discriminant), b);
+        double near = far != 0 ? (lc_dot(oc, oc) - r * r) / far : 0.0;
+        root[0] = fmin(near, far);
+        root[1] = fmax(near, far);
+    }
+    if (is_to) { /* one root is t_max and does not count */
+        int end = fabs(root[0] - q->t_max) < fabs(root[1] - q->t_max) ? 0 : 1;
+        root[end] = -1.0;
+    }
+    for (int i = 0; i < 2; ++i)
+        if (root[i] > 0 && root[i] < q->t_max)
+            return root[i];
+    return -1.0;
+}
+
+static double meet_disk(const lc_round *disk, const query *q, int is_end)
+{
+    if (is_end)
+        return -1.0;
+    double cos_theta = lc_dot(disk->n, q->d);
+    if (cos_theta == 0)
+        return -1.0;
+    double t = lc_dot(disk->n, lc_sub(disk->o, q->o)) / cos_theta;
+    if (!(t > 0 && t < q->t_max))
+        return -1.0;
+    lc_vec3 r = lc_sub(lc_add(q->o, lc_scale(t, q->d)), disk->o);
+    double u = lc_dot(disk->du, r), v = lc_dot(disk->dv, r);
+    return u * u + v * v <= 1.0 ? t : -1.0;
+}
+
+static double meet(const query *q, int part)
+{
+    const lc_round *round = &q->accel->rounds[part];
+    if (round->is_sphere)
+        return meet_sphere(round, q, part == q->from, part == q->to);
+    return meet_disk(round, q, part == q->from || part == q->to);
+}
+
+static void round_bounds(const struct RTCBoundsFunctionArguments *args)
+{
+    const lc_round *round = &((const lc_accel *)args->geometryUserPtr)->rounds[args->primID];
+    double lower[3], upper[3];
+    const double o[3] = {round->o.x, round->o.y, round->o.z};
+    const double eu[3] = {round->eu.x, round->eu.y, round->eu.z}, ev[3] = {round->ev.x, round->ev.y, round->ev.z};
+    for (int i = 0; i < 3; ++i) {
+        double extent = round->is_sphere ? round->radius : hypot(eu[i], ev[i]);
+        extent += 4 * 0x1p-24 * (fabs(o[i]) + extent) + LEAST_OFFSET; /* outwards, also after rounding */
+        lower[i] = o[i] - extent;
+        upper[i] = o[i] + extent;
+    }
+    struct RTCBounds *bounds = args->bounds_o;
+    bounds->lower_x = (float)lower[0];
+    bounds->lower_y = (float)lower[1];
+    bounds->lower_z = (float)lower[2];
+    bounds->upper_x = (float)upper[0];
+    bounds->upper_y = (float)upper[1];
+    bounds->upper_z = (float)upper[2];
+}
+
+static void round_intersect(const struct RTCIntersectFunctionNArguments *args)
+{
+    query *q = (query *)args->context;
+    if (args->valid[0] == 0)
+        return;
+    struct RTCRayHit *rayhit = (struct RTCRayHit *)args->rayhit; /* N is 1: rtcIntersect1 */
+    double t = meet(q, (int)args->primID);
+    if (t < 0 || (float)t >= rayhit->ray.tfar)
+        return;
+    rayhit->ray.tfar = (float)t;
+    rayhit->hit.geomID = ROUNDS;
+    rayhit->hit.primID = args->primID;
+    q->t_max = t;
+    q->hit = (int)args->primID;
+    q->t = t;
+}
+
+static void round_occluded(const struct RTCOccludedFunctionNArguments *args)
+{
+    const query *q = (const query *)args->context;
+    if (args->valid[0] != 0 && meet(q, (int)args->primID) >= 0)
+        ((struct RTCRay *)args->ray)->tfar = -INFINITY;
+}
+
+/* ---- building ---------------------------------------------------------------------------------------- */
+
+static lc_vec3 to_unit(const lc_accel *accel, lc_vec3 p) { return lc_scale(accel->scale, lc_sub(p, accel->center)); }
+
+static void grow(double lower[3], double upper[3], lc_vec3 p)
+{
+    const double x[3] = {p.x, p.y, p.z};
+    for (int i = 0; i < 3; ++i) {
+        lower[i] = fmin(lower[i], x[i]);
+        upper[i] = fmax(upper[i], x[i]);
+    }
+}
+
+static lc_vec3 corner(const lc_face *face, int i)
+{
+    double u = i == 1 || i == 2 ? 1.0 : -1.0, v = i >= 2 ? 1.0 : -1.0;
+    return lc_add(face->o, lc_add(lc_scale(u, face->eu), lc_scale(v, face->ev)));
+}
+
+static void find_unit_space(lc_accel *accel, const lc_scene *scene)
+{
+    double lower[3] = {DBL_MAX, DBL_MAX, DBL_MAX}, upper[3] = {-DBL_MAX, -DBL_MAX, -DBL_MAX};
+    for (int f = 0; f < scene->face_count; ++f)
+        for (int i = 0; i < 4; ++i)
+            grow(lower, upper, corner(&scene->faces[f], i));
+    for (int r = 0; r < scene->round_count; ++r) {
+        const lc_round *round = &scene->rounds[r];
+        lc_vec3 e = round->is_sphere ? lc_vec(round->radius, round->radius, round->radius)
+                                     : lc_vec(hypot(round->eu.x, round->ev.x), hypot(round->eu.y, round->ev.y),
+                                              hypot(round->eu.z, round->ev.z));
+        grow(lower, upper, lc_sub(round->o, e));
+        grow(lower, upper, lc_add(round->o, e));
+    }
+    accel->center = lc_vec(0, 0, 0);
+    accel->scale = 1.0;
+    double half = 0.0;
+    for (int i = 0; i < 3; ++i)
+        half = fmax(half, (upper[i] - lower[i]) / 2);
+    if (!(half > 0))
+        return; /* no shapes */
+    int exponent;
+    frexp(half, &exponent); /* half <= 2^exponent */
+    accel->scale = ldexp(1.0, -exponent);
+    accel->center = lc_vec((lower[0] + upper[0]) / 2, (lower[1] + upper[1]) / 2, (lower[2] + upper[2]) / 2);
+}
+
+/* Distance along the normal by which a ray that leaves the face must start, in unit space. */
+static double face_offset(const lc_accel *accel, const lc_face *face)
+{
+    lc_vec3 n = face->n, o = to_unit(accel, face->o);
+    const double weight[3] = {fabs(n.x), fabs(n.y), fabs(n.z)}, at[3] = {fabs(o.x), fabs(o.y), fabs(o.z)};
+    const double extent[3] = {fabs(face->eu.x) + fabs(face->ev.x), fabs(face->eu.y) + fabs(face->ev.y),
+                              fabs(face->eu.z) + fabs(face->ev.z)};
+    double sum = 0.0;
+    for (int i = 0; i < 3; ++i)
+        sum += weight[i] * (at[i] + 3 * accel->scale * extent[i]);
+    return SAFETY * sum + LEAST_OFFSET;
+}
+
+static void add_faces(lc_accel *accel, const lc_scene *scene)
+{
+    RTCGeometry geometry = rtcNewGeometry(accel->device, RTC_GEOMETRY_TYPE_QUAD);
+    size_t count = (size_t)scene->face_count;
+    accel->vertices =
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 4 * count);
+    accel->quads =
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, 4 * sizeof(unsigned), count);
+    for (size_t f = 0; accel->vertices && accel->quads && f < count; ++f) {
+        accel->offsets[f] = face_offset(accel, &scene->faces[f]);
+        for (unsigned i = 0; i < 4; ++i) {
+            lc_vec3 p = to_unit(accel, corner(&scene->faces[f], (int)i));
+            float *vertex = accel->vertices[4 * f + i];
+            vertex[0] = (float)p.x;
+            vertex[1] = (float)p.y;
+            vertex[2] = (float)p.z;
+            accel->quads[f][i] = (unsigned)(4 * f + i);
+        }
+    }
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(accel->scene, geometry, FACES);
+    rtcReleaseGeometry(geometry);
+}
+
+static void add_rounds(lc_accel *accel, const lc_scene *scene)
+{
+    for (int r = 0; r < scene->round_count; ++r) {
+        lc_round *round = &accel->rounds[r];
+        *round = scene->rounds[r];
+        round->o = to_unit(accel, round->o);
+        round->radius *= accel->scale;
+        round->eu = lc_scale(accel->scale, round->eu);
+        round->ev = lc_scale(accel->scale, round->ev);
+        round->du = lc_scale(1.0 / accel->scale, round->du);
+        round->dv = lc_scale(1.0 / accel->scale, round->dv);
+    }
+    RTCGeometry geometry = rtcNewGeometry(accel->device, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(geometry, (unsigned)scene->round_count);
+    rtcSetGeometryUserData(geometry, accel);
+    rtcSetGeometryBoundsFunction(geometry, round_bounds, NULL);
+    rtcSetGeometryIntersectFunction(geometry, round_intersect);
+    rtcSetGeometryOccludedFunction(geometry, round_occluded);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(accel->scene, geometry, ROUNDS);
+    rtcReleaseGeometry(geometry);
+}
+
+lc_status lc_accel_build(lc_accel **out, const lc_scene *scene, lc_error *err)
+{
+    lc_accel *accel = calloc(1, sizeof *accel);
+    *out = NULL;
+    if (!accel)
+        return lc_fail(err, LC_FAULT, "out of memory for the accelerator");
+    accel->face_count = scene->face_count;
+    accel->round_count = scene->round_count;
+    accel->offsets = calloc((size_t)scene->face_count + 1, sizeof *accel->offsets);
+    accel->rounds = calloc((size_t)scene->round_count + 1, sizeof *accel->rounds);
+    /* One thread: the tree must not depend on who built which branch first. */
+    accel->device = rtcNewDevice("threads=1,set_affinity=0");
+    if (!accel->offsets || !accel->rounds || !accel->device) {
+        lc_accel_free(accel);
+        return lc_fail(err, LC_FAULT, "cannot make an Embree device");
+    }
+    find_unit_space(accel, scene);
+    accel->scene = rtcNewScene(accel->device);
+    rtcSetSceneFlags(accel->scene, RTC_SCENE_FLAG_ROBUST);
+    if (scene->face_count)
+        add_faces(accel, scene);
+    if (scene->round_count)
+        add_rounds(accel, scene);
+    rtcCommitScene(accel->scene);
+    enum RTCError error = rtcGetDeviceError(accel->device);
+    if (error != RTC_ERROR_NONE) {
+        lc_accel_free(accel);
+        return lc_fail(err, LC_FAULT, "embree cannot build the scene (error %d)", (int)error);
+    }
+    *out = accel;
+    return LC_OK;
+}
+
+void lc_accel_free(lc_accel *accel)
+{
+    if (!accel)
+        return;
+    if (accel->scene)
+        rtcReleaseScene(accel->scene);
+    if (accel->device)
+        rtcReleaseDevice(accel->device);
+    free(accel->offsets);
+    free(accel->rounds);
+    free(accel);
+}
+
+/* ---- queries -------------------------------------------------------------------------------------------- */
+
+static void start_query(query *q, const lc_accel *accel, lc_vec3 o, lc_vec3 d, double t_max, int from_part, int to_part)
+{
+#if LC_EMBREE == 4
+    rtcInitRayQueryContext(&q->base);
+#else
+    rtcInitIntersectContext(&q->base);
+#endif
+    q->accel = accel;
+    q->o = o;
+    q->d = d;
+    q->t_max = t_max;
+    q->from = from_part >= accel->face_count ? from_part - accel->face_count : -1;
+    q->to = to_part >= accel->face_count ? to_part - accel->face_count : -1;
+    q->hit = -1;
+    q->t = 0.0;
+}
+
+/* Where Embree's ray starts (or ends) instead of at `p` on face `part`: off the face, towards `to`. */
+static lc_vec3 off_face(const lc_accel *accel, lc_vec3 p, int part, lc_vec3 n, lc_vec3 to, double extra)
+{
+    if (part < 0 || part >= accel->face_count)
+        return p;
+    double offset = accel->offsets[part] + extra;
+    return lc_add(p, lc_scale(lc_dot(n, to) < 0 ? -offset : offset, n));
+}
+
+static void fill_ray(struct RTCRay *ray, lc_vec3 o, lc_vec3 d, double t_far, double time)
+{
+    ray->org_x = (float)o.x;
+    ray->org_y = (float)o.y;
+    ray->org_z = (float)o.z;
+    ray->dir_x = (float)d.x;
+    ray->dir_y = (float)d.y;
+    ray->dir_z = (float)d.z;
+    ray->tnear = 0.0f;
+    ray->tfar = (float)t_far;
+    ray->time = (float)time;
+    ray->mask = ~0u;
+    ray->id = 0;
+    ray->flags = 0;
+}
+
+/* The point where the ray meets the plane of the face, in double. */
+static void finish_face(const lc_face *face, lc_vec3 o, lc_vec3 d, lc_hit *hit)
+{
+    double t = lc_dot(face->n, lc_sub(face->o, o)) / lc_dot(face->n, d);
+    t = fmax(t, 0.0); /* in a corner, rounding may put `o` a hair behind the neighbour */
+    hit->p = lc_add(o, lc_scale(t, d));
+    hit->n = face->n;
+    hit->distance = t;
+    hit->shape = face->shape;
+}
+
+static void finish_round(const lc_round *round, lc_vec3 o, lc_vec3 d, double t, lc_hit *hit)
+{
+    hit->p = lc_add(o, lc_scale(t, d));
+    hit->n = round->n;
+    if (round->is_sphere) {
+        lc_vec3 r = lc_normalize(lc_sub(hit->p, round->o));
+        hit->p = lc_add(round->o, lc_scale(round->radius, r)); /* no drift over bounces */
+        hit->n = lc_scale(round->sign, r);
+    }
+    hit->distance = t;
+    hit->shape = round->shape;
+}
+
+int lc_accel_intersect(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, lc_vec3 d, double time, int from_part,
+                       lc_vec3 from_n, lc_hit *hit)
+{
+    lc_vec3 start = to_unit(accel, o);
+    double skipped = 0.0, reach = lc_dot(start, start);
+    if (reach > 16.0 &&
+        from_part < 0) { /* a far camera: enter the ball of radius 4 in double, or float rounding would show */
+        double b = lc_dot(start, d), discriminant = b * b - reach + 16.0;
+        if (b >= 0 || discriminant < 0)
+            return 0;
+        skipped = -b - sqrt(discriminant);
+        start = lc_add(start, lc_scale(skipped, d));
+    }
+    query q;
+    start_query(&q, accel, start, d, INFINITY, from_part, -1);
+    struct RTCRayHit rayhit;
+    fill_ray(&rayhit.ray, off_face(accel, start, from_part, from_n, d, 0.0), d, INFINITY, time);
+    rayhit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rayhit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+#if LC_EMBREE == 4
+    struct RTCIntersectArguments args;
+    rtcInitIntersectArguments(&args);
+    args.context = &q.base;
+    rtcIntersect1(accel->scene, &rayhit, &args);
+#else
+    rtcIntersect1(accel->scene, &q.base, &rayhit);
+#endif
+    if (rayhit.hit.geomID == FACES) {
+        hit->part = (int)rayhit.hit.primID;
+        finish_face(&scene->faces[hit->part], o, d, hit);
+        return 1;
+    }
+    if (rayhit.hit.geomID == ROUNDS) {
+        hit->part = accel->face_count + q.hit;
+        finish_round(&scene->rounds[q.hit], o, d, (q.t + skipped) / accel->scale, hit);
+        return 1;
+    }
+    return 0;
+}
+
+int lc_accel_occluded(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, int from_part, lc_vec3 from_n,
+                      lc_vec3 target, int to_part, lc_vec3 to_n, int to_infinity, double time)
+{
+    (void)scene;
+    query q;
+    struct RTCRay ray;
+    lc_vec3 a = to_unit(accel, o);
+    if (to_infinity) {
+        start_query(&q, accel, a, target, INFINITY, from_part, -1);
+        fill_ray(&ray, off_face(accel, a, from_part, from_n, target, 0.0), target, INFINITY, time);
+    } else {
+        lc_vec3 b = to_unit(accel, target), along = lc_sub(b, a);
+        double length = lc_length(along);
+        if (!(length > 0))
+            return 0;
+        start_query(&q, accel, a, lc_scale(1.0 / length, along), length, from_part, to_part);
+        /* Embree reaches the end as o + d, each rounded: that, too, must stay on the near side of the light. */
+        double rounding = 2 * 0x1p-24 *
+                          (fabs(to_n.x) * (fabs(a.x) + fabs(along.x)) + fabs(to_n.y) * (fabs(a.y) + fabs(along.y)) +
+                           fabs(to_n.z) * (fabs(a.z) + fabs(along.z)));
+        lc_vec3 start = off_face(accel, a, from_part, from_n, along, 0.0);
+        lc_vec3 end = off_face(accel, b, to_part, to_n, lc_neg(along), rounding);
+        fill_ray(&ray, start, lc_sub(end, start), 1.0, time);
+    }
+#if LC_EMBREE == 4
+    struct RTCOccludedArguments args;
+    rtcInitOccludedArguments(&args);
+    args.context = &q.base;
+    rtcOccluded1(accel->scene, &ray, &args);
+#else
+    rtcOccluded1(accel->scene, &q.base, &ray);
+#endif
+    return ray.tfar < 0;
+}

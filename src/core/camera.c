@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ *
+ * The pinhole camera, as Mitsuba 3's `perspective` defines it.
+ */
+#include "core/host.h"
+
+static double tan_half_fov_x(const lc_camera_desc *camera, double aspect)
+{
+    double t = tan(camera->fov * (LC_PI / 360.0));
+    switch (camera->fov_axis) {
+    case LC_FOV_X:
+        return t;
+    case LC_FOV_Y:
+        return t * aspect;
+    case LC_FOV_DIAGONAL:
+        return t * aspect / sqrt(1.0 + aspect * aspect);
+    case LC_FOV_SMALLER:
+        return aspect > 1.0 ? t * aspect : t;
+    case LC_FOV_LARGER:
+        return aspect > 1.0 ? t : t * aspect;
+    }
+    return t;
+}
+
+lc_ray lc_camera_ray(const lc_camera_desc *camera, int width, int height, double x, double y)
+{
+    double aspect = (double)width / height, t = tan_half_fov_x(camera, aspect);
+    lc_vec3 local = lc_vec((1.0 - 2.0 * x / width) * t, (1.0 - 2.0 * y / height) * t / aspect, 1.0);
+    lc_vec3 along = lc_affine_vector(&camera->to_world, local); /* reaches the plane at distance 1 */
+    lc_vec3 eye = lc_affine_point(&camera->to_world, lc_vec(0, 0, 0));
+    lc_ray ray;
+    ray.o = lc_add(eye, lc_scale(camera->near_clip, along));
+    ray.d = lc_normalize(along);
+    ray.time = 0.0;
+    return ray;
+}
+
+void lc_camera_see(const lc_scene *scene, const lc_ray *ray, lc_hit *hit)
+{
+    const lc_camera_desc *camera = &lc_scene_description(scene)->camera;
+    lc_intersect(scene, ray, hit);
+    if (!hit->valid || isinf(camera->far_clip))
+        return;
+    lc_vec3 axis = lc_affine_vector(&camera->to_world, lc_vec(0, 0, 1));
+    lc_vec3 eye = lc_affine_point(&camera->to_world, lc_vec(0, 0, 0));
+    if (lc_dot(axis, lc_sub(hit->p, eye)) > camera->far_clip)
+        hit->valid = 0;
+}

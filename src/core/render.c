@@ -1,0 +1,213 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ *
+ * Threads take tiles; each pixel is a pure function of the options, so that who took which tile cannot show.
+ */
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "core/scene_c.h"
+
+typedef struct job {
+    lc_film *film;
+    const lc_scene *scene;
+    const lc_estimator *estimator;
+    const lc_render_options *options;
+    int tiles_x, tiles;
+    pthread_mutex_t lock; /* of all that follows */
+    int next_tile, done;
+} job;
+
+/* The first bad sample of a thread's share, and their number. */
+typedef struct bad_samples {
+    uint64_t count, pixel, sample;
+    double value[3];
+} bad_samples;
+
+static int is_bad(lc_rgb c)
+{
+    return !(c.r >= 0 && c.g >= 0 && c.b >= 0 && c.r < INFINITY && c.g < INFINITY && c.b < INFINITY);
+}
+
+static lc_rgb one_sample(const lc_scene *scene, const lc_estimator *estimator, const lc_options *bounces,
+                         lc_sampler *sampler, int width, int height, int x, int y)
+{
+    lc_hit hit;
+    double dx = lc_next(sampler), dy = lc_next(sampler);
+    lc_ray ray = lc_camera_ray(&scene->desc.camera, width, height, x + dx, y + dy);
+    lc_camera_see(scene, &ray, &hit);
+    lc_sampler_seek(sampler, LC_DIMENSION_ESTIMATOR);
+    return estimator->radiance(scene, &ray, &hit, bounces, sampler);
+}
+
+static void render_pixel(const job *j, int x, int y, bad_samples *bad)
+{
+    const lc_render_options *o = j->options;
+    uint32_t pixel = (uint32_t)(y * j->film->width + x);
+    lc_options bounces = {o->min_bounces, o->max_bounces};
+    double block[LC_BLOCK][3];
+    int filled = 0;
+    for (uint64_t s = o->first; s < o->first + o->count; ++s) {
+        lc_sampler sampler;
+        lc_sampler_start(&sampler, o->seed, o->arm, pixel, (uint32_t)s);
+        lc_rgb c = one_sample(j->scene, j->estimator, &bounces, &sampler, j->film->width, j->film->height, x, y);
+        if (is_bad(c)) {
+            if (bad->count++ == 0 || pixel < bad->pixel) {
+                bad->pixel = pixel;
+                bad->sample = s;
+                bad->value[0] = c.r;
+                bad->value[1] = c.g;
+                bad->value[2] = c.b;
+            }
+            c = lc_black(); /* the film stays readable; the count makes it fail */
+        }
+        block[filled][0] = c.r;
+        block[filled][1] = c.g;
+        block[filled][2] = c.b;
+        if (++filled == LC_BLOCK || s + 1 == o->first + o->count) {
+            lc_pixel_add(&j->film->pixels[pixel], (const double(*)[3])block, filled);
+            filled = 0;
+        }
+    }
+}
+
+static int take_tile(job *j)
+{
+    pthread_mutex_lock(&j->lock);
+    int tile = j->next_tile;
+    j->next_tile += j->options->shards;
+    pthread_mutex_unlock(&j->lock);
+    return tile;
+}
+
+static void finish_tile(job *j, int reports)
+{
+    pthread_mutex_lock(&j->lock);
+    int done = ++j->done;
+    pthread_mutex_unlock(&j->lock);
+    if (reports && j->options->progress)
+        j->options->progress(j->options->user, (double)done * j->options->shards / j->tiles);
+}
+
+static void report_bad(job *j, const bad_samples *bad)
+{
+    lc_film *film = j->film;
+    if (bad->count == 0)
+        return;
+    pthread_mutex_lock(&j->lock);
+    uint64_t known = (uint64_t)film->bad_y * (uint64_t)film->width + (uint64_t)film->bad_x;
+    /* The first by pixel and sample, so that the report is the same for any number of threads. */
+    if (film->bad == 0 || bad->pixel < known || (bad->pixel == known && bad->sample < film->bad_sample)) {
+        film->bad_x = (int)(bad->pixel % (uint64_t)film->width);
+        film->bad_y = (int)(bad->pixel / (uint64_t)film->width);
+        film->bad_sample = bad->sample;
+        memcpy(film->bad_value, bad->value, sizeof film->bad_value);
+    }
+    film->bad += bad->count;
+    pthread_mutex_unlock(&j->lock);
+}
+
+static void work(job *j, int reports)
+{
+    bad_samples bad = {0, 0, 0, {0, 0, 0}};
+    for (int tile = take_tile(j); tile < j->tiles; tile = take_tile(j)) {
+        int x0 = tile % j->tiles_x * LC_TILE, y0 = tile / j->tiles_x * LC_TILE;
+        for (int y = y0; y < y0 + LC_TILE && y < j->film->height; ++y)
+            for (int x = x0; x < x0 + LC_TILE && x < j->film->width; ++x)
+                render_pixel(j, x, y, &bad);
+        finish_tile(j, reports);
+    }
+    report_bad(j, &bad);
+}
+
+static void *work_in_thread(void *argument)
+{
+    work(argument, 0);
+    return NULL;
+}
+
+static lc_status check_options(const lc_film *film, const lc_scene *scene, const lc_estimator *estimator,
+                               const lc_render_options *o, lc_error *err)
+{
+    const char *scene_name = scene->desc.name;
+    if (estimator->abi != LC_ABI)
+        return lc_fail(err, LC_BAD_INPUT, "%s: written for interface %d, this program has %d", estimator->name,
+                       estimator->abi, LC_ABI);
+    if (o->min_bounces < 0 || o->max_bounces < o->min_bounces || o->max_bounces > estimator->max_bounces)
+        return lc_fail(err, LC_BAD_INPUT, "%s: bounces %d to %d, expected 0 to %d", estimator->name, o->min_bounces,
+                       o->max_bounces, estimator->max_bounces);
+    if (o->count < 1 || o->first > UINT32_MAX || o->count > UINT32_MAX || o->first + o->count > UINT32_MAX)
+        return lc_fail(err, LC_BAD_INPUT,
+                       "%s: samples %llu to %llu of a pixel, expected at least one and at most 2^32 - 1", scene_name,
+                       (unsigned long long)o->first, (unsigned long long)(o->first + o->count));
+    if (o->shards > 1 && (o->shard < 0 || o->shard >= o->shards))
+        return lc_fail(err, LC_BAD_INPUT, "%s: shard %d of %d, expected 0 to %d", scene_name, o->shard, o->shards,
+                       o->shards - 1);
+    if (film->count == 0)
+        return LC_OK;
+    if (film->seed != o->seed || film->arm != o->arm || film->first + film->count != o->first ||
+        film->min_bounces != o->min_bounces || film->max_bounces != o->max_bounces ||
+        strcmp(film->scene, scene_name) != 0 || strcmp(film->estimator, estimator->name) != 0 ||
+        film->shards != (o->shards > 1 ? o->shards : 1))
+        return lc_fail(err, LC_FAULT, "%s: a film grows only by the next samples of its own stream", scene_name);
+    return LC_OK;
+}
+
+lc_status lc_render(lc_film *film, const lc_scene *scene, const lc_estimator *estimator,
+                    const lc_render_options *options, lc_error *err)
+{
+    lc_status status = check_options(film, scene, estimator, options, err);
+    if (status != LC_OK)
+        return status;
+    lc_render_options o = *options;
+    if (o.shards < 1) {
+        o.shard = 0;
+        o.shards = 1;
+    }
+    job j = {film,    scene, estimator, &o, (film->width + LC_TILE - 1) / LC_TILE, 0, PTHREAD_MUTEX_INITIALIZER,
+             o.shard, 0};
+    j.tiles = j.tiles_x * ((film->height + LC_TILE - 1) / LC_TILE);
+
+    long cores = o.threads > 0 ? o.threads : sysconf(_SC_NPROCESSORS_ONLN);
+    int helpers = (int)(cores < 1 ? 1 : cores > 256 ? 256 : cores) - 1, started = 0;
+    pthread_t threads[256];
+    while (started < helpers && pthread_create(&threads[started], NULL, work_in_thread, &j) == 0)
+        ++started; /* fewer threads than asked for change nothing but the time */
+    work(&j, 1);
+    for (int i = 0; i < started; ++i)
+        pthread_join(threads[i], NULL);
+
+    if (film->count == 0) {
+        film->first = o.first;
+        film->seed = o.seed;
+        film->arm = o.arm;
+        film->min_bounces = o.min_bounces;
+        film->max_bounces = o.max_bounces;
+        film->shard = o.shard;
+        film->shards = o.shards;
+        film->has_third = 1;
+        snprintf(film->scene, sizeof film->scene, "%s", scene->desc.name);
+        snprintf(film->estimator, sizeof film->estimator, "%s", estimator->name);
+    }
+    film->count += o.count;
+    return LC_OK;
+}
+
+/* Where `lightcheck sample --gdb` stops: everything is set up, the estimator comes next. */
+void lc_replay_begin(void) {}
+
+lc_rgb lc_replay(lc_scene *scene, const lc_estimator *estimator, const lc_render_options *options, int width,
+                 int height, int x, int y, uint64_t sample, const lc_trace_log *log)
+{
+    lc_options bounces = {options->min_bounces, options->max_bounces};
+    lc_sampler sampler;
+    lc_sampler_start(&sampler, options->seed, options->arm, (uint32_t)(y * width + x), (uint32_t)sample);
+    sampler.log = log;
+    scene->log = log;
+    lc_replay_begin();
+    lc_rgb radiance = one_sample(scene, estimator, &bounces, &sampler, width, height, x, y);
+    scene->log = NULL;
+    return radiance;
+}

@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ *
+ * Private to src/core: what a built scene is made of.
+ */
+#ifndef LC_SCENE_C_H
+#define LC_SCENE_C_H
+
+#include "core/host.h"
+
+/* A parallelogram o + u eu + v ev, |u|, |v| <= 1: a rectangle, or one side of a cube. */
+typedef struct lc_face {
+    lc_vec3 o, eu, ev;
+    lc_vec3 n;      /* unit, flips applied */
+    lc_vec3 du, dv; /* dual of eu, ev: u = du . (p - o) */
+    double area;    /* m^2 */
+    int shape;
+} lc_face;
+
+/* A disk o + u eu + v ev, u^2 + v^2 <= 1, or a sphere of this radius around o. */
+typedef struct lc_round {
+    int is_sphere;
+    lc_vec3 o, eu, ev, n, du, dv; /* as above (disk); the columns of a sphere's rotation in eu, ev, n */
+    double radius, sign;          /* sphere; sign = -1 when its normals are flipped inwards */
+    double area;
+    int shape;
+} lc_round;
+
+/* How a shape is stored: `count` faces from `first`, or the round one `first`. A part is numbered as in the accelerator:
+ * faces from 0, then the round ones. */
+typedef struct lc_shape {
+    int is_round, first, count;
+    double area;
+} lc_shape;
+
+typedef enum lc_light_kind { LC_LIGHT_AREA, LC_LIGHT_POINT, LC_LIGHT_DIRECTIONAL } lc_light_kind;
+
+typedef struct lc_light {
+    lc_light_kind kind;
+    int index; /* into shapes, points or directionals of the description */
+} lc_light;
+
+struct lc_scene {
+    lc_scene_desc desc;
+    lc_shape *shapes;
+    lc_face *faces;
+    lc_round *rounds;
+    int face_count, round_count;
+    lc_light *lights;
+    int light_count;
+    double *area_to; /* emitting area of lights 0..i: area_to[light_count - 1] is the total */
+    struct lc_accel *accel;
+    unsigned lobes, emitters;
+    const lc_trace_log *log; /* NULL but in a replay */
+};
+
+/* accel.c, the only file that knows Embree. */
+typedef struct lc_accel lc_accel;
+lc_status lc_accel_build(lc_accel **out, const lc_scene *scene, lc_error *err);
+void lc_accel_free(lc_accel *accel);
+/* The first hit from `o` along unit `d`; `from_part` is the part it starts on, with normal `from_n`, or -1. Fills p, n, distance, shape, part. */
+int lc_accel_intersect(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, lc_vec3 d, double time, int from_part,
+                       lc_vec3 from_n, lc_hit *hit);
+/* Whether something lies strictly between `o` and `q` (q on part `to_part` with normal to_n, or -1), or along unit `q` to infinity. */
+int lc_accel_occluded(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, int from_part, lc_vec3 from_n, lc_vec3 q,
+                      int to_part, lc_vec3 to_n, int to_infinity, double time);
+
+/* warp.c */
+void lc_tangents(lc_vec3 n, lc_vec3 *s, lc_vec3 *t);
+lc_vec3 lc_uniform_sphere(double u, double v);
+
+/* What the front of a shape emits at p [W sr^-1 m^-2]. */
+lc_rgb lc_shape_radiance(const lc_scene *scene, int shape, int part, lc_vec3 p);
+/* Texture coordinates of a point on a shape, as Mitsuba 3 has them. */
+void lc_shape_uv(const lc_scene *scene, int shape, int part, lc_vec3 p, double *u, double *v);
+
+void lc_replay_begin(void);
+
+void lc_log(const lc_trace_log *log, const char *format, ...)
+#ifdef __GNUC__
+    __attribute__((format(printf, 2, 3)))
+#endif
+    ;
+
+#endif

@@ -1,0 +1,110 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ *
+ * analytic: reflected direct light, pixel by pixel, against closed forms: Lo = rho E / pi with E from verify/analytic, which reads the
+ * description and has never seen a ray. Occluders are handled there exactly, by clipping, or by quadrature.
+ */
+#include <string.h>
+
+#include "verify/analytic/analytic.h"
+#include "verify/checks/checks.h"
+
+/* Light that arrives directly at the hit and leaves towards the viewer. */
+static lc_status direct_view(lc_rgb *value, int *kind, const lc_scene *scene, const lc_hit *hit, void *user,
+                             lc_error *err)
+{
+    (void)user;
+    *kind = -1;
+    if (value)
+        *value = lc_black();
+    if (!hit->valid)
+        return LC_OK;
+    lc_material material = lc_material_at(scene, hit);
+    *kind = 8 * hit->shape + (lc_dot(hit->n, hit->wo) > 0);
+    /* A checkerboard's cell, told by its colour. */
+    const lc_texture *front = &lc_scene_description(scene)
+                                   ->materials[lc_scene_description(scene)->shapes[hit->shape].material]
+                                   .side[0]
+                                   .diffuse;
+    if (front->is_checkerboard && material.diffuse.r == front->color[0].r && material.diffuse.g == front->color[0].g)
+        *kind += 2;
+    if (!value || lc_rgb_max(material.diffuse) == 0)
+        return LC_OK;
+    lc_rgb irradiance;
+    lc_status status =
+        lc_direct_irradiance(&irradiance, lc_scene_description(scene), hit->p, lc_facing(hit->n, hit->wo), err);
+    if (status == LC_OK)
+        *value = lc_rgb_scale(LC_INV_PI, lc_rgb_mul(material.diffuse, irradiance));
+    return status;
+}
+
+static lc_status expect_direct(lc_expected *out, const lc_claim *claim, const lc_scene *scene, int threads,
+                               lc_error *err)
+{
+    return lc_expect_view(out, direct_view, NULL, scene, claim->tolerance, threads, err);
+}
+
+/* The arrays are zero already. */
+static lc_status expect_black(lc_expected *out, const lc_claim *claim, const lc_scene *scene, int threads,
+                              lc_error *err)
+{
+    (void)out;
+    (void)claim;
+    (void)scene;
+    (void)threads;
+    (void)err;
+    return LC_OK;
+}
+
+/* Scenes with a closed form. tolerance: of a pixel's mean, where a kink (a horizon, a penumbra's edge) runs through it. */
+static const struct {
+    const char *scene;
+    lc_expect_fn *expect;
+    double tolerance;
+    const char *source;
+} rows[] = {
+    {"plane_point", expect_direct, 1e-5, "E = I cos / d^2"},
+    {"plane_directional", expect_direct, 1e-5, "E = E0 cos, Lo = rho E / pi"},
+    {"plane_rectangle", expect_direct, 1e-5, "Lambert's polygon formula"},
+    {"plane_tilted", expect_direct, 1e-5, "Lambert's polygon formula, clipped to the horizon"},
+    {"plane_disk", expect_direct, 1e-5, "disk to a point, quadrature to 1e-9 (Howell B-13 when parallel)"},
+    {"plane_sphere", expect_direct, 1e-5, "sphere to a point, Howell B-43"},
+    {"plane_cube", expect_direct, 1e-5, "Lambert's polygon formula for six faces"},
+    {"lamp_100w", expect_direct, 1e-5, "L = Phi / (pi A), then Lambert's polygon formula"},
+    {"two_lights", expect_direct, 1e-5, "Lambert's polygon formula, two lamps"},
+    {"five_lights", expect_direct, 1e-5, "closed forms of five lamps, added"},
+    {"occluder", expect_direct, 1e-5, "quadrature over the visible part of the lamps"},
+    {"cornell", expect_direct, 1e-5,
+     "Lambert's polygon formula over the visible part of the lamp, clipped by the boxes"},
+    {"mixed_lights", expect_direct, 1e-5, "area, point and directional light, added"},
+    {"textured_lamp", expect_direct, 1e-5, "Lambert's polygon formula for each cell of the checkerboard"},
+    {"flipped_twosided", expect_direct, 1e-5, "Lambert's polygon formula"},
+    {"sky", expect_direct, 1e-5, "Lo = rho L under a constant sky"},
+    {"light_behind", expect_black, 0, "a lamp seen from its back gives nothing"},
+    {"no_lights", expect_black, 0, "no light, no light"},
+};
+
+static lc_status plan(const lc_check *self, lc_claims *claims, const lc_scene *scene, const lc_estimator *estimator,
+                      lc_error *err)
+{
+    const char *name = lc_scene_description(scene)->name;
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
+        if (strcmp(rows[i].scene, name) != 0 || !lc_sees_everything(scene, estimator) || estimator->max_bounces < 1)
+            continue;
+        lc_claim *claim = lc_claims_add(claims, self, scene, estimator);
+        if (!claim)
+            return lc_fail(err, LC_FAULT, "out of memory for the claims");
+        claim->expect = rows[i].expect;
+        claim->tolerance = rows[i].tolerance;
+        claim->exact = rows[i].expect == expect_black;
+        claim->source = rows[i].source;
+        claim->may_be_still = lc_scene_emitters(scene) == LC_DIRECTIONAL;
+    }
+    return LC_OK;
+}
+
+const lc_check lc_check_analytic = {
+    "analytic",
+    "direct light against closed forms, pixel by pixel",
+    "Lambert 1760; Howell, A Catalog of Radiation Heat Transfer Configuration Factors; docs/checks.md",
+    plan,
+};

@@ -1,0 +1,70 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ *
+ * checks.h: a check turns (scene, estimator) into claims; the judge decides them. One file = one kind of check = one line in registry.c.
+ */
+#ifndef LC_CHECKS_H
+#define LC_CHECKS_H
+
+#include "core/host.h"
+
+struct lc_claim;
+
+/* What is expected of each pixel, box-filtered, row by row. */
+typedef struct lc_expected {
+    int width, height;
+    double *rgb; /* 3 a pixel: mean radiance [W sr^-1 m^-2] */
+    unsigned char *
+        skip; /* 1: a silhouette or an edge of a checkerboard runs through the pixel, whose mean has no closed form: left out */
+} lc_expected;
+
+/* Fills rgb and skip, which are there already and zero. */
+typedef lc_status lc_expect_fn(lc_expected *out, const struct lc_claim *claim, const lc_scene *scene, int threads,
+                               lc_error *err);
+
+/* "Over this scene, the mean of this estimator is ...": */
+typedef struct lc_claim {
+    const struct lc_check *check;
+    const lc_scene *scene;
+    const lc_estimator *estimator;
+    int min_bounces, max_bounces;
+    const lc_estimator *other; /* ... that of this one, or where NULL */
+    lc_expect_fn *expect;      /* ... these values */
+    int exact;                 /* 1: sample by sample, no statistics; `other` then draws the same numbers */
+    int may_be_still;   /* declared: an estimator may have no variance here, and is then held to the values exactly */
+    double tolerance;   /* error of the expected values, relative to their mean; a difference below it is none */
+    const char *source; /* of what is expected, in words */
+} lc_claim;
+
+typedef struct lc_claims {
+    lc_claim *items;
+    int count;
+} lc_claims;
+
+typedef struct lc_check {
+    const char *name, *summary, *source;
+    /* Appends the claims of this kind about (scene, estimator); none where it does not apply. */
+    lc_status (*plan)(const struct lc_check *self, lc_claims *claims, const lc_scene *scene,
+                      const lc_estimator *estimator, lc_error *err);
+} lc_check;
+
+extern const lc_check *const lc_checks[]; /* ends with NULL */
+
+/* Appends a claim of `check` with bounces 1 to 1; NULL without memory. */
+lc_claim *lc_claims_add(lc_claims *claims, const lc_check *check, const lc_scene *scene, const lc_estimator *estimator);
+void lc_claims_release(lc_claims *claims);
+
+/* What `estimator` may see of `scene`: its lobes and emitters, restricted to those that occur. Two estimators estimate the same integral where
+ * both agree (and the bounces do). */
+unsigned lc_language(const lc_scene *scene, const lc_estimator *estimator);
+/* 1 when the estimator follows every lobe and reaches every emitter that occurs. */
+int lc_sees_everything(const lc_scene *scene, const lc_estimator *estimator);
+
+/* Radiance seen at a hit, and a number that changes where the radiance jumps. With value = NULL only the kind is asked for. Any thread. */
+typedef lc_status lc_view_fn(lc_rgb *value, int *kind, const lc_scene *scene, const lc_hit *hit, void *user,
+                             lc_error *err);
+/* The mean of a view over each pixel, by adaptive quadrature to `tolerance` times the image's mean; pixels of more than one kind are
+ * skipped. threads 0: one a core. */
+lc_status lc_expect_view(lc_expected *out, lc_view_fn *view, void *user, const lc_scene *scene, double tolerance,
+                         int threads, lc_error *err);
+
+#endif

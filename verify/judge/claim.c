@@ -1,0 +1,318 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ *
+ * Deciding one claim: grow the film(s) to the next look, judge the differences at every scale, stop when something is shown.
+ */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "verify/judge/judge_c.h"
+
+static const char *const channel_names[] = {"R", "G", "B"};
+
+/* ---- words ---------------------------------------------------------------------------------------------------- */
+
+static void describe_bad(lc_row *row, const lc_film *film, uint64_t seed)
+{
+    row->verdict = LC_ROW_FAIL;
+    snprintf(row->reason, sizeof row->reason,
+             "%s on %s: %llu samples are NaN, infinite or negative, the first (%g, %g, %g) at pixel %d,%d sample %llu "
+             "seed %llu",
+             film->estimator, film->scene, (unsigned long long)film->bad, film->bad_value[0], film->bad_value[1],
+             film->bad_value[2], film->bad_x, film->bad_y, (unsigned long long)film->bad_sample,
+             (unsigned long long)seed);
+}
+
+static void describe(lc_row *row, const lc_pyramid *p)
+{
+    if (row->verdict == LC_ROW_FAIL) {
+        double whole = 100 * (row->ratio - 1);
+        if (p->worst.level >= 0 && p->worst.level < p->levels - 1)
+            snprintf(row->reason, sizeof row->reason,
+                     "%s on %s is wrong: %+.3g%% over the image, most clearly in %dx%d pixels at %d,%d (%s)",
+                     row->estimator, row->scene, whole, row->tile_width, row->tile_height, row->tile_x, row->tile_y,
+                     channel_names[row->channel]);
+        else
+            snprintf(row->reason, sizeof row->reason,
+                     "%s on %s is wrong by %+.3g%% of the reflected light, [%+.3g%%, %+.3g%%] (%s)", row->estimator,
+                     row->scene, whole, 100 * (row->low - 1), 100 * (row->high - 1), channel_names[row->channel]);
+    } else if (row->verdict == LC_ROW_UNDECIDED) {
+        const lc_level *image = &p->level[p->levels - 1];
+        const char *why = image->few      ? "too few samples a pixel"
+                          : image->still  ? "its samples show no variance, which proves nothing"
+                          : image->skewed ? "rare bright samples: the tails are too heavy for this number of samples"
+                                          : "the interval is still wider than the margin";
+        snprintf(row->reason, sizeof row->reason, "%s on %s: undecided after %llu samples a pixel: %s", row->estimator,
+                 row->scene, (unsigned long long)row->samples, why);
+    }
+}
+
+/* ---- numbers -------------------------------------------------------------------------------------------------- */
+
+/* Writes what the pyramid of one channel found into the row. */
+static void fill_numbers(lc_row *row, const lc_pyramid *p, int channel, double scale, double alpha_pass, double n)
+{
+    const lc_student *s = &p->whole.student;
+    lc_interval interval = lc_student_interval(s, 2 * alpha_pass);
+    row->channel = channel;
+    row->expected = scale;
+    row->ratio = 1 + s->difference / scale;
+    row->low = 1 + interval.lower / scale;
+    row->high = 1 + interval.upper / scale;
+    row->tile_width = 0;
+    if (p->worst.level >= 0) {
+        row->tile_x = p->worst.x;
+        row->tile_y = p->worst.y;
+        row->tile_width = p->worst.width;
+        row->tile_height = p->worst.height;
+        row->tile_ratio = 1 + p->worst.student.difference / p->worst.student.expected;
+        row->tile_log10_p = p->worst.log_p / log(10.0);
+    }
+    row->missed = lc_missed_value(row->margin, n, 1e-6);
+}
+
+/* How hard the channel was: FAIL before undecided before PASS, then by the deviation. */
+static double hardness(const lc_pyramid *p, double scale)
+{
+    double step = p->verdict == LC_FAIL ? 2e9 : p->verdict == LC_GO_ON ? 1e9 : 0;
+    double deviation = fabs(p->whole.student.difference) / scale;
+    return step + (p->verdict == LC_FAIL && p->worst.level >= 0 ? fmin(-p->worst.log_p, 1e8) : fmin(deviation, 1e8));
+}
+
+/* Mean over the pixels that are not skipped, of the film or of the expected values. */
+static double mean_of(const lc_film *film, const lc_expected *expected, const unsigned char *skip, int channel)
+{
+    size_t count =
+               film ? (size_t)film->width * (size_t)film->height : (size_t)expected->width * (size_t)expected->height,
+           used = 0;
+    double sum = 0;
+    for (size_t i = 0; i < count; ++i) {
+        if (skip && skip[i])
+            continue;
+        sum += film ? film->pixels[i].c[channel].mean : expected->rgb[3 * i + (size_t)channel];
+        ++used;
+    }
+    return used ? sum / (double)used : 0;
+}
+
+/* ---- exact claims ----------------------------------------------------------------------------------------------- */
+
+/* Pixel by pixel, against the other film's or the expected values. */
+static void compare_exactly(lc_row *row, const lc_film *film, const lc_film *other, const lc_expected *expected,
+                            double tolerance)
+{
+    size_t count = (size_t)film->width * (size_t)film->height;
+    row->verdict = LC_ROW_PASS;
+    for (size_t i = 0; i < count; ++i) {
+        for (int c = 0; c < 3; ++c) {
+            if (expected && expected->skip[i])
+                continue;
+            double is = film->pixels[i].c[c].mean,
+                   should = other ? other->pixels[i].c[c].mean : expected->rgb[3 * i + (size_t)c];
+            if (lc_decide_exact(is - should, tolerance * fabs(should)) == LC_PASS)
+                continue;
+            row->verdict = LC_ROW_FAIL;
+            snprintf(row->reason, sizeof row->reason,
+                     "%s on %s is wrong: pixel %d,%d has %s = %.9g, expected exactly %.9g (%+.3g%%)", row->estimator,
+                     row->scene, (int)(i % (size_t)film->width), (int)(i / (size_t)film->width), channel_names[c], is,
+                     should, 100 * (is / should - 1));
+            return;
+        }
+    }
+}
+
+static lc_status judge_exact(lc_row *row, lc_session *session, const lc_claim *claim, lc_error *err)
+{
+    const lc_film *film, *other = NULL;
+    const lc_expected *expected = NULL;
+    uint32_t arm = lc_session_arm(claim->estimator);
+    row->samples = LC_BLOCK;
+    lc_status status = lc_session_film(&film, session, claim->scene, claim->estimator, claim->min_bounces,
+                                       claim->max_bounces, arm, row->samples, err);
+    if (status == LC_OK)
+        status = claim->other ? lc_session_film(&other, session, claim->scene, claim->other, claim->min_bounces,
+                                                claim->max_bounces, arm, row->samples, err)
+                              : lc_session_values(&expected, session, claim, err);
+    if (status != LC_OK)
+        return status;
+    row->paths = row->samples * (uint64_t)film->width * (uint64_t)film->height;
+    if (film->bad)
+        describe_bad(row, film, session->options->seed);
+    else
+        compare_exactly(row, film, other, expected, claim->tolerance);
+    return LC_OK;
+}
+
+/* 1 when no pixel shows any variance beyond rounding. */
+static int is_still(const lc_film *film)
+{
+    for (size_t i = 0; i < (size_t)film->width * (size_t)film->height; ++i)
+        for (int c = 0; c < 3; ++c) {
+            const lc_moments *m = &film->pixels[i].c[c];
+            if (m->m2 > 1e-24 * m->mean * m->mean * (double)film->pixels[i].n)
+                return 0;
+        }
+    return 1;
+}
+
+/* ---- statistical claims -------------------------------------------------------------------------------------------- */
+
+/* c of an estimator on a scene: from the table, else from a pilot whose samples are never used again. */
+static lc_status noise_of(double *c, lc_session *session, const lc_claim *claim, const lc_estimator *estimator,
+                          lc_error *err)
+{
+    *c = claim->min_bounces == 1 && claim->max_bounces == 1
+             ? lc_cell_noise(lc_scene_description(claim->scene)->name, estimator->name)
+             : NAN;
+    if (!isnan(*c))
+        return LC_OK;
+    const lc_film *pilot;
+    lc_status status = lc_session_film(&pilot, session, claim->scene, estimator, claim->min_bounces, claim->max_bounces,
+                                       ~lc_session_arm(estimator), LC_BLOCK, err);
+    if (status == LC_OK)
+        *c = lc_film_noise(pilot);
+    return status;
+}
+
+typedef struct look_result {
+    lc_verdict verdict;
+    lc_pyramid hardest;
+    int channel;
+    double scale;
+} look_result;
+
+static lc_status judge_look(look_result *out, const lc_film *film, const lc_film *other, const lc_expected *expected,
+                            lc_estimate *field, lc_pyramid_plan *plan, double margin, double tolerance, lc_error *err)
+{
+    const unsigned char *skip = expected ? expected->skip : NULL;
+    double most = -1;
+    out->verdict = LC_PASS;
+    for (int c = 0; c < 3; ++c) {
+        lc_pyramid pyramid;
+        double scale = mean_of(other, expected, skip, c);
+        /* Where nothing is expected, any light at all is wrong by infinitely many percent: the margin is then of what was seen. */
+        double unit = scale > 0 ? scale : mean_of(film, NULL, skip, c);
+        plan->margin[lc_pyramid_levels(film->width, film->height) - 1] = unit > 0 ? margin * unit : INFINITY;
+        lc_status status = other ? lc_field_two(field, film, other, c, tolerance * scale, err)
+                                 : lc_field_one(field, film, expected->rgb, c, tolerance * scale, err);
+        for (size_t i = 0; skip && i < (size_t)film->width * (size_t)film->height; ++i)
+            if (skip[i])
+                field[i] = lc_estimate_zero();
+        if (status == LC_OK)
+            status = lc_pyramid_judge(&pyramid, field, film->width, film->height, plan, err);
+        if (status != LC_OK)
+            return status;
+        out->verdict = lc_verdict_both(out->verdict, pyramid.verdict);
+        if (hardness(&pyramid, unit) > most) {
+            most = hardness(&pyramid, unit);
+            out->hardest = pyramid;
+            out->channel = c;
+            out->scale = unit;
+        }
+    }
+    return LC_OK;
+}
+
+static lc_status judge_statistically(lc_row *row, lc_session *session, const lc_claim *claim, lc_estimate *field,
+                                     lc_error *err)
+{
+    const lc_scene_desc *desc = lc_scene_description(claim->scene);
+    int pixels = desc->width * desc->height;
+    double c, c_other = 0;
+    lc_status status = noise_of(&c, session, claim, claim->estimator, err);
+    if (status == LC_OK && claim->other)
+        status = noise_of(&c_other, session, claim, claim->other, err);
+    if (status != LC_OK)
+        return status;
+    row->margin = session->margin * fmax(1.0, c);
+
+    /* Both arms grow together, and one look more than planned is kept in reserve. */
+    lc_looks looks = lc_looks_plan(LC_LEAST_SAMPLES, lc_planned_samples(hypot(c, c_other), row->margin, pixels));
+    if (looks.first < LC_LEAST_SAMPLES)
+        looks.first = LC_LEAST_SAMPLES;
+    looks.count = looks.count < LC_MOST_LOOKS ? looks.count + 1 : LC_MOST_LOOKS;
+    lc_budget budget = {session->options->false_fail, session->options->false_pass, session->rows, 3, LC_MOST_LOOKS};
+    lc_pyramid_plan plan;
+    lc_pyramid_plan_init(&plan, lc_budget_row_fail(&budget), lc_budget_row_pass(&budget));
+
+    const lc_expected *expected = NULL;
+    if (!claim->other)
+        status = lc_session_values(&expected, session, claim, err);
+    look_result result = {.verdict = LC_GO_ON};
+    for (int k = 0; status == LC_OK && k < looks.count && result.verdict == LC_GO_ON; ++k) {
+        const lc_film *film, *other = NULL;
+        row->samples = lc_looks_samples(&looks, k);
+        status = lc_session_film(&film, session, claim->scene, claim->estimator, claim->min_bounces, claim->max_bounces,
+                                 lc_session_arm(claim->estimator), row->samples, err);
+        if (status == LC_OK && claim->other)
+            status = lc_session_film(&other, session, claim->scene, claim->other, claim->min_bounces,
+                                     claim->max_bounces, lc_session_arm(claim->other), row->samples, err);
+        if (status != LC_OK)
+            return status;
+        row->paths = row->samples * (uint64_t)pixels;
+        if (film->bad || (other && other->bad)) {
+            describe_bad(row, film->bad ? film : other, session->options->seed);
+            return LC_OK;
+        }
+        if (claim->may_be_still && expected && is_still(film)) {
+            row->exact = 1;
+            compare_exactly(row, film, NULL, expected, fmax(claim->tolerance, 1e-9));
+            return LC_OK;
+        }
+        status = judge_look(&result, film, other, expected, field, &plan, row->margin, claim->tolerance, err);
+    }
+    if (status != LC_OK)
+        return status;
+    row->verdict = result.verdict == LC_PASS ? LC_ROW_PASS : result.verdict == LC_FAIL ? LC_ROW_FAIL : LC_ROW_UNDECIDED;
+    fill_numbers(row, &result.hardest, result.channel, result.scale, plan.alpha_pass, (double)row->paths);
+    describe(row, &result.hardest);
+    return LC_OK;
+}
+
+lc_status lc_judge_claim(lc_row *row, lc_session *session, const lc_claim *claim, lc_error *err)
+{
+    const lc_verify_options *o = session->options;
+    const lc_scene_desc *desc = lc_scene_description(claim->scene);
+    snprintf(row->check, sizeof row->check, "%s", claim->check->name);
+    snprintf(row->scene, sizeof row->scene, "%s", desc->name);
+    snprintf(row->estimator, sizeof row->estimator, "%s", claim->estimator->name);
+    snprintf(row->source, sizeof row->source, "%s", claim->source);
+    snprintf(row->reproduce, sizeof row->reproduce, "%s verify --suite %s -c %s -e %s --scene %s --seed %llu",
+             o->program, o->suite->name, row->check, row->estimator, row->scene, (unsigned long long)o->seed);
+    row->exact = claim->exact;
+    if (claim->exact)
+        return judge_exact(row, session, claim, err);
+    lc_estimate *field = malloc(sizeof *field * (size_t)desc->width * (size_t)desc->height);
+    if (!field)
+        return lc_fail(err, LC_FAULT, "out of memory for the differences of %s", desc->name);
+    lc_status status = judge_statistically(row, session, claim, field, err);
+    free(field);
+    return status;
+}
+
+lc_status lc_compare_films(lc_row *row, const lc_film *a, const lc_film *b, double margin, double false_fail,
+                           double false_pass, lc_error *err)
+{
+    lc_budget budget = {false_fail, false_pass, 1, 3, 1};
+    lc_pyramid_plan plan;
+    lc_estimate *field = malloc(sizeof *field * (size_t)a->width * (size_t)a->height);
+    if (!field)
+        return lc_fail(err, LC_FAULT, "out of memory for the differences");
+    lc_pyramid_plan_init(&plan, lc_budget_row_fail(&budget), lc_budget_row_pass(&budget));
+    look_result result;
+    lc_status status = judge_look(&result, a, b, NULL, field, &plan, margin, 0.0, err);
+    free(field);
+    if (status != LC_OK)
+        return status;
+    snprintf(row->check, sizeof row->check, "compare");
+    snprintf(row->scene, sizeof row->scene, "%s", a->scene[0] ? a->scene : "(unknown)");
+    snprintf(row->estimator, sizeof row->estimator, "%s", a->estimator[0] ? a->estimator : "(unknown)");
+    snprintf(row->source, sizeof row->source, "the second image");
+    row->margin = margin;
+    row->samples = a->count;
+    row->paths = a->count * (uint64_t)a->width * (uint64_t)a->height;
+    row->verdict = result.verdict == LC_PASS ? LC_ROW_PASS : result.verdict == LC_FAIL ? LC_ROW_FAIL : LC_ROW_UNDECIDED;
+    fill_numbers(row, &result.hardest, result.channel, result.scale, plan.alpha_pass, (double)row->paths);
+    describe(row, &result.hardest);
+    return LC_OK;
+}

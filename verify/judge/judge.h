@@ -1,0 +1,66 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ *
+ * judge.h: from scenes and estimators to a report. It plans the rows, shares out one error budget, grows films look by look until each claim
+ * is shown equal (PASS) or shown different (FAIL) or its samples run out (UNDECIDED). The rules are in docs/architecture.md.
+ */
+#ifndef LC_JUDGE_H
+#define LC_JUDGE_H
+
+#include "verify/checks/checks.h"
+#include "verify/report/report.h"
+
+/* ---- suites ------------------------------------------------------------------------------------------------ */
+
+/* A scene of the suites and what was measured of the estimators there: c, the standard deviation of a sample of reflected light
+ * over its mean, pooled over the image. It sets margin (margin of the suite times max(1, c)) and samples. */
+typedef struct lc_cell {
+    const char *scene, *estimator;
+    double c;
+} lc_cell;
+
+typedef struct lc_suite {
+    const char *name;
+    double margin;       /* relative, of a row with c <= 1 */
+    double most_samples; /* cap on the planned samples of all cells together */
+} lc_suite;
+
+extern const lc_suite lc_suites[];          /* ends with name = NULL */
+extern const char *const lc_suite_scenes[]; /* ends with NULL */
+extern const lc_cell lc_cells[];            /* ends with scene = NULL */
+
+const lc_suite *lc_suite_find(const char *name);
+/* c of that cell, or of the cell of the estimator it was made from; NAN when the table does not know it (then a discarded pilot measures it). */
+double lc_cell_noise(const char *scene, const char *estimator);
+/* Samples a pixel that a row plans for, so that hardly any ends undecided: (c z / margin)^2 over the pixels, z = 11. */
+uint64_t lc_planned_samples(double c, double margin, int pixels);
+
+/* ---- a run --------------------------------------------------------------------------------------------------- */
+
+typedef struct lc_verify_options {
+    const lc_suite *suite;
+    double margin;                 /* relative, for c <= 1; 0: the suite's */
+    double false_fail, false_pass; /* of the whole run */
+    uint64_t seed;
+    int threads;
+    const lc_estimator *estimator; /* only this one (it need not be in the registry), or NULL: all */
+    const char *check, *scene;     /* only these, or NULL */
+    /* Called after each row, in the order of the report; may be NULL. */
+    void (*on_row)(void *user, const lc_row *row, int done, int count);
+    void *user;
+    const char *program; /* for the reproducing lines */
+} lc_verify_options;
+
+/* suite quick, 1e-6 both, seed 1, all cores. */
+void lc_verify_options_init(lc_verify_options *options);
+
+/* Fills the report. LC_OK even when rows failed: lc_report_status() tells. Loads scenes through `load`, which owns nothing of them. */
+typedef lc_status lc_load_scene_fn(lc_scene **out, const char *name, lc_error *err);
+lc_status lc_verify(lc_report *report, const lc_verify_options *options, lc_load_scene_fn *load, lc_error *err);
+
+/* ---- two images ------------------------------------------------------------------------------------------------ */
+
+/* Decides whether two films of different streams have the same mean, within a relative margin of the second's mean. */
+lc_status lc_compare_films(lc_row *row, const lc_film *a, const lc_film *b, double margin, double false_fail,
+                           double false_pass, lc_error *err);
+
+#endif

@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ *
+ * Private to verify/judge: a run in progress.
+ */
+#ifndef LC_JUDGE_C_H
+#define LC_JUDGE_C_H
+
+#include "verify/judge/judge.h"
+#include "verify/stats/stats.h"
+
+/* A film of one (scene, estimator, bounces, stream) at one look; the next look's grows from it, and all checks share them. */
+typedef struct lc_stock_film {
+    const lc_scene *scene;
+    const lc_estimator *estimator;
+    int min_bounces, max_bounces;
+    uint32_t arm;
+    lc_film *film;
+} lc_stock_film;
+
+/* Expected values of a scene, computed once. */
+typedef struct lc_stock_values {
+    const lc_scene *scene;
+    lc_expect_fn *expect;
+    lc_expected expected;
+} lc_stock_values;
+
+typedef struct lc_session {
+    const lc_verify_options *options;
+    lc_stock_film *films;
+    lc_stock_values *values;
+    int film_count, value_count;
+    int rows; /* among which the budget is split */
+    double margin;
+    uint64_t paths;
+} lc_session;
+
+enum { LC_MOST_LOOKS = 5 };
+
+/* The film of that stream with exactly `samples` a pixel. The film is the session's. */
+lc_status lc_session_film(const lc_film **out, lc_session *session, const lc_scene *scene,
+                          const lc_estimator *estimator, int min_bounces, int max_bounces, uint32_t arm,
+                          uint64_t samples, lc_error *err);
+/* The expected values of the claim. They are the session's. */
+lc_status lc_session_values(const lc_expected **out, lc_session *session, const lc_claim *claim, lc_error *err);
+/* Drops all films and values: the next scene needs none of them. */
+void lc_session_clear(lc_session *session);
+
+/* The stream of an estimator in this run. One that is not in the registry never shares a stream with one that is, even under the same name. */
+uint32_t lc_session_arm(const lc_estimator *estimator);
+
+/* c of a film: standard deviation of a sample over the mean, both pooled over the image, in the channel where it is largest. */
+double lc_film_noise(const lc_film *film);
+
+/* Decides one claim and fills the row. */
+lc_status lc_judge_claim(lc_row *row, lc_session *session, const lc_claim *claim, lc_error *err);
+
+#endif

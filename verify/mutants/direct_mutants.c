@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ *
+ * Bugs of direct light, one switch each: the family of light_direct and hemisphere_direct.
+ */
+#include "lightcheck.h"
+
+enum {
+    NO_COSINE = 1,
+    NO_PI = 2,
+    NO_LIGHT_COUNT = 4,
+    NO_LIGHT_COSINE = 8,
+    NO_VISIBILITY = 16,
+    NO_DISTANCE = 32,
+    BACK_EMITS = 64,
+    COSINE_DIRECTIONS = 128,
+    ONE_PERCENT = 256
+};
+
+static double surface_factor(unsigned bugs, double cos_surface)
+{
+    return (bugs & NO_COSINE ? 1.0 : cos_surface) * (bugs & NO_PI ? LC_PI : 1.0) * (bugs & ONE_PERCENT ? 1.01 : 1.0);
+}
+
+static lc_rgb by_light(const lc_scene *scene, const lc_hit *hit, lc_sampler *sampler, unsigned bugs)
+{
+    int count = lc_light_count(scene);
+    lc_light_sample light;
+    if (count == 0)
+        return lc_black();
+    lc_light_sample_one(scene, (int)(lc_next(sampler) * count), hit, sampler, &light);
+    double cos_surface = lc_dot(lc_facing(hit->n, hit->wo), light.wi);
+    if (!(cos_surface > 0))
+        return lc_black();
+    lc_rgb incoming = light.irradiance;
+    if (!light.is_delta) {
+        double cos_light = -lc_dot(light.n, light.wi);
+        if (bugs & BACK_EMITS)
+            cos_light = fabs(cos_light);
+        if (!(cos_light > 0))
+            return lc_black();
+        double d2 = bugs & NO_DISTANCE ? 1.0 : light.distance * light.distance;
+        incoming = lc_rgb_scale((bugs & NO_LIGHT_COSINE ? 1.0 : cos_light) / (light.pdf_area * d2), light.radiance);
+    }
+    if (!(bugs & NO_VISIBILITY) && !lc_visible(scene, hit, &light))
+        return lc_black();
+    double lights = bugs & NO_LIGHT_COUNT ? 1.0 : count;
+    return lc_rgb_scale(lights * surface_factor(bugs, cos_surface),
+                        lc_rgb_mul(lc_bsdf_eval(scene, hit, light.wi), incoming));
+}
+
+static lc_rgb by_hemisphere(const lc_scene *scene, const lc_hit *hit, lc_sampler *sampler, unsigned bugs)
+{
+    lc_vec3 n = lc_facing(hit->n, hit->wo);
+    double u = lc_next(sampler), v = lc_next(sampler);
+    lc_vec3 wi = bugs & COSINE_DIRECTIONS ? lc_cosine_hemisphere(n, u, v) : lc_uniform_hemisphere(n, u, v);
+    lc_hit next;
+    lc_trace(scene, hit, wi, &next);
+    lc_rgb f = lc_bsdf_eval(scene, hit, wi);
+    return lc_rgb_scale(2.0 * LC_PI * surface_factor(bugs, lc_dot(n, wi)), lc_rgb_mul(f, lc_emission(scene, &next)));
+}
+
+typedef lc_rgb direct_fn(const lc_scene *scene, const lc_hit *hit, lc_sampler *sampler, unsigned bugs);
+
+static lc_rgb sum(direct_fn *direct, unsigned bugs, const lc_scene *scene, const lc_hit *hit, const lc_options *options,
+                  lc_sampler *sampler)
+{
+    lc_rgb total = options->min_bounces <= 0 ? lc_emission(scene, hit) : lc_black();
+    if (options->min_bounces <= 1 && options->max_bounces >= 1 && hit->valid)
+        total = lc_rgb_add(total, direct(scene, hit, sampler, bugs));
+    return total;
+}
+
+#define LIGHT_MUTANT(id, bugs, summary) \
+    static lc_rgb radiance_##id(const lc_scene *scene, const lc_ray *ray, const lc_hit *hit, \
+                                const lc_options *options, lc_sampler *sampler) \
+    { \
+        (void)ray; \
+        return sum(by_light, bugs, scene, hit, options, sampler); \
+    } \
+    LC_ESTIMATOR( \
+        id) = {LC_ABI, #id,          summary, "light_direct, broken", LC_DIFFUSE, LC_AREA | LC_POINT | LC_DIRECTIONAL, \
+               1,      radiance_##id}
+
+#define HEMISPHERE_MUTANT(id, bugs, summary) \
+    static lc_rgb radiance_##id(const lc_scene *scene, const lc_ray *ray, const lc_hit *hit, \
+                                const lc_options *options, lc_sampler *sampler) \
+    { \
+        (void)ray; \
+        return sum(by_hemisphere, bugs, scene, hit, options, sampler); \
+    } \
+    LC_ESTIMATOR(id) = {LC_ABI,           #id, summary,      "hemisphere_direct, broken", LC_DIFFUSE, \
+                        LC_AREA | LC_SKY, 1,   radiance_##id}
+
+LIGHT_MUTANT(light_no_cosine, NO_COSINE, "the cosine at the surface is missing");
+LIGHT_MUTANT(light_no_pi, NO_PI, "the BRDF is albedo instead of albedo / pi");
+LIGHT_MUTANT(light_no_count, NO_LIGHT_COUNT, "the number of lights is missing");
+LIGHT_MUTANT(light_no_light_cosine, NO_LIGHT_COSINE, "the cosine at the light is missing");
+LIGHT_MUTANT(light_no_visibility, NO_VISIBILITY, "no shadow ray");
+LIGHT_MUTANT(light_no_distance, NO_DISTANCE, "1 / d^2 is missing");
+LIGHT_MUTANT(light_back_emits, BACK_EMITS, "lights shine from their backs, too");
+LIGHT_MUTANT(light_one_percent, ONE_PERCENT, "everything is 1% too bright");
+HEMISPHERE_MUTANT(hemisphere_no_cosine, NO_COSINE, "the cosine at the surface is missing");
+HEMISPHERE_MUTANT(hemisphere_no_pi, NO_PI, "the BRDF is albedo instead of albedo / pi");
+HEMISPHERE_MUTANT(hemisphere_cosine_directions, COSINE_DIRECTIONS, "directions by the cosine, weight of uniform ones");

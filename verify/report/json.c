@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ *
+ * The report as JSON. JSON has no infinity and no NaN: such a number is null (jansson would drop the key without a word).
+ */
+#include <jansson.h>
+#include <math.h>
+
+#include "verify/report/report.h"
+
+static json_t *number(double value) { return isfinite(value) ? json_real(value) : json_null(); }
+
+static json_t *row_json(const lc_row *row)
+{
+    json_t *o = json_pack("{s:s, s:s, s:s, s:s, s:b, s:s, s:I, s:I, s:s}", "check", row->check, "scene", row->scene,
+                          "estimator", row->estimator, "verdict", lc_row_verdict_name(row->verdict), "exact",
+                          row->exact, "expected_source", row->source, "samples_per_pixel", (json_int_t)row->samples,
+                          "paths", (json_int_t)row->paths, "reproduce", row->reproduce);
+    if (!o)
+        return NULL;
+    if (!row->exact) {
+        json_object_set_new(o, "channel", json_string(row->channel == 0 ? "R" : row->channel == 1 ? "G" : "B"));
+        json_object_set_new(o, "ratio", number(row->ratio));
+        json_object_set_new(o, "interval", json_pack("[o, o]", number(row->low), number(row->high)));
+        json_object_set_new(o, "margin", number(row->margin));
+        json_object_set_new(o, "expected_mean", number(row->expected));
+    }
+    if (row->verdict == LC_ROW_PASS && !row->exact)
+        json_object_set_new(o, "excluded_missed_contribution", number(row->missed));
+    if (row->verdict != LC_ROW_PASS)
+        json_object_set_new(o, "reason", json_string(row->reason));
+    if (row->tile_width)
+        json_object_set_new(o, "worst_tile",
+                            json_pack("{s:i, s:i, s:i, s:i, s:o, s:o}", "x", row->tile_x, "y", row->tile_y, "width",
+                                      row->tile_width, "height", row->tile_height, "ratio", number(row->tile_ratio),
+                                      "log10_p", number(row->tile_log10_p)));
+    return o;
+}
+
+lc_status lc_report_json(FILE *out, const lc_report *report, lc_error *err)
+{
+    json_t *rows = json_array();
+    for (int i = 0; rows && i < report->count; ++i)
+        json_array_append_new(rows, row_json(&report->rows[i]));
+    char seed[32];
+    snprintf(seed, sizeof seed, "%llu",
+             (unsigned long long)report->seed); /* 64 bits do not fit a JSON number everywhere */
+    json_t *o = json_pack("{s:s, s:s, s:s, s:s, s:o, s:o, s:i, s:I, s:o}", "program", "lightcheck", "version",
+                          LC_VERSION, "suite", report->suite, "seed", seed, "false_fail_probability",
+                          number(report->false_fail), "false_pass_probability", number(report->false_pass),
+                          "not_applicable", report->not_applicable, "paths", (json_int_t)report->paths, "rows", rows);
+    if (!o)
+        return lc_fail(err, LC_FAULT, "out of memory for the JSON report");
+    json_dumpf(o, out, JSON_INDENT(2) | JSON_REAL_PRECISION(12));
+    fputc('\n', out);
+    json_decref(o);
+    return LC_OK;
+}

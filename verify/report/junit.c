@@ -1,0 +1,68 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ *
+ * The report in the common subset of JUnit's XML: testsuites / testsuite / properties / testcase / failure. UNDECIDED is a failure of
+ * type "undecided": no CI system must take it for a pass.
+ */
+#include "verify/report/report.h"
+
+static void print_escaped(FILE *out, const char *text)
+{
+    for (const unsigned char *c = (const unsigned char *)text; *c; ++c) {
+        switch (*c) {
+        case '&':
+            fputs("&amp;", out);
+            break;
+        case '<':
+            fputs("&lt;", out);
+            break;
+        case '>':
+            fputs("&gt;", out);
+            break;
+        case '"':
+            fputs("&quot;", out);
+            break;
+        default:
+            fputc(*c < 0x20 ? ' ' : *c, out); /* control characters are not XML */
+        }
+    }
+}
+
+static void print_row(FILE *out, const lc_row *row)
+{
+    fputs("    <testcase classname=\"lightcheck.", out);
+    print_escaped(out, row->check);
+    fputs("\" name=\"", out);
+    print_escaped(out, row->scene);
+    fputc('/', out);
+    print_escaped(out, row->estimator);
+    if (row->verdict == LC_ROW_PASS) {
+        fputs("\"/>\n", out);
+        return;
+    }
+    fprintf(out, "\">\n      <failure type=\"%s\" message=\"", row->verdict == LC_ROW_FAIL ? "wrong" : "undecided");
+    print_escaped(out, row->reason);
+    fputs("\">expected: ", out);
+    print_escaped(out, row->source);
+    fputs("; again: ", out);
+    print_escaped(out, row->reproduce);
+    fputs("</failure>\n    </testcase>\n", out);
+}
+
+void lc_report_junit(FILE *out, const lc_report *report)
+{
+    int failures = 0;
+    for (int i = 0; i < report->count; ++i)
+        failures += report->rows[i].verdict != LC_ROW_PASS;
+    fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n", out);
+    fprintf(out,
+            "<testsuites tests=\"%d\" failures=\"%d\">\n  <testsuite name=\"lightcheck.%s\" tests=\"%d\" "
+            "failures=\"%d\" errors=\"0\" skipped=\"0\">\n",
+            report->count, failures, report->suite, report->count, failures);
+    fprintf(out,
+            "    <properties>\n      <property name=\"seed\" value=\"%llu\"/>\n      <property name=\"version\" "
+            "value=\"%s\"/>\n    </properties>\n",
+            (unsigned long long)report->seed, LC_VERSION);
+    for (int i = 0; i < report->count; ++i)
+        print_row(out, &report->rows[i]);
+    fputs("  </testsuite>\n</testsuites>\n", out);
+}

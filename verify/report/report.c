@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "verify/report/report.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+lc_row *lc_report_add(lc_report *report)
+{
+    lc_row *rows = realloc(report->rows, ((size_t)report->count + 1) * sizeof *rows);
+    if (!rows)
+        return NULL;
+    report->rows = rows;
+    lc_row *row = &rows[report->count++];
+    memset(row, 0, sizeof *row);
+    return row;
+}
+
+void lc_report_release(lc_report *report)
+{
+    free(report->rows);
+    memset(report, 0, sizeof *report);
+}
+
+const char *lc_row_verdict_name(lc_row_verdict verdict)
+{
+    static const char *const names[] = {"PASS", "FAIL", "UNDECIDED"}; /* in the order of lc_row_verdict */
+    return names[verdict];
+}
+
+lc_status lc_report_status(const lc_report *report)
+{
+    lc_status status = report->count ? LC_OK : LC_BAD_INPUT;
+    for (int i = 0; i < report->count; ++i) {
+        if (report->rows[i].verdict == LC_ROW_FAIL)
+            return LC_WRONG;
+        if (report->rows[i].verdict == LC_ROW_UNDECIDED)
+            status = LC_UNDECIDED;
+    }
+    return status;
+}

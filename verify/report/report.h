@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ *
+ * report.h: the one result model. The judge fills rows; each format is a function of the rows.
+ */
+#ifndef LC_REPORT_H
+#define LC_REPORT_H
+
+#include <stdio.h>
+
+#include "core/host.h"
+
+typedef enum lc_row_verdict { LC_ROW_PASS, LC_ROW_FAIL, LC_ROW_UNDECIDED } lc_row_verdict;
+
+/* One claim, decided. Relative numbers are in units of the expected mean of reflected light. */
+typedef struct lc_row {
+    char check[32], scene[64], estimator[64];
+    lc_row_verdict verdict;
+    int exact;        /* a deterministic claim: no statistics; ratio and interval mean nothing */
+    int channel;      /* 0 1 2: the one that was hardest; the numbers below are its */
+    double ratio;     /* mean / expected mean */
+    double low, high; /* the interval of the ratio at the error the row was given; may be infinite */
+    double margin;    /* relative; the ratio was to be shown within 1 +- margin */
+    double expected;  /* mean radiance [W sr^-1 m^-2] */
+    char source[160]; /* of what was expected */
+    uint64_t samples; /* a pixel */
+    uint64_t paths;   /* in all, of the estimator under test */
+    int tile_x, tile_y, tile_width, tile_height; /* the worst tile, width 0: none */
+    double tile_ratio;                           /* there: mean / expected mean of the tile; NaN where that is 0 */
+    double tile_log10_p;                         /* of it, corrected for all tiles and levels */
+    double
+        missed; /* PASS: the largest contribution that could have been missed, in units of the mean of a sample; else 0 */
+    char reason[512];    /* in words, for FAIL and UNDECIDED */
+    char reproduce[256]; /* a command line */
+} lc_row;
+
+typedef struct lc_report {
+    lc_row *rows;
+    int count;
+    uint64_t seed;
+    char suite[16];
+    double false_fail, false_pass; /* of the whole run */
+    char budget[1024];             /* how they were split, in words */
+    int not_applicable;            /* pairs of estimator and scene that no check applies to */
+    uint64_t paths;                /* rendered in all */
+} lc_report;
+
+/* Appends a zeroed row, or NULL without memory. */
+lc_row *lc_report_add(lc_report *report);
+void lc_report_release(lc_report *report);
+
+const char *lc_row_verdict_name(lc_row_verdict verdict); /* "PASS" ... */
+/* The exit status: WRONG if any row failed, else UNDECIDED if any is, else OK. No rows at all is BAD_INPUT. */
+lc_status lc_report_status(const lc_report *report);
+
+/* Each writes the whole report to `out`; errors stay in the stream. */
+void lc_report_text(FILE *out, const lc_report *report);
+lc_status lc_report_json(FILE *out, const lc_report *report, lc_error *err);
+void lc_report_junit(FILE *out, const lc_report *report);
+
+/* One row as a line of the text table (no newline), for progress as well. */
+void lc_report_text_header(FILE *out);
+void lc_report_text_row(FILE *out, const lc_row *row);
+
+#endif

@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ *
+ * The report as a table for a person: one line a row, what failed in words below it.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "verify/report/report.h"
+
+void lc_report_text_header(FILE *out)
+{
+    fprintf(out, "%-10s %-18s %-20s %-9s %10s  %-22s %8s %9s\n", "check", "scene", "estimator", "verdict", "estimate",
+            "interval", "margin", "paths");
+}
+
+/* 4.6M */
+static void format_count(char *text, size_t size, uint64_t count)
+{
+    if (count >= 1000000)
+        snprintf(text, size, "%.1fM", (double)count * 1e-6);
+    else if (count >= 1000)
+        snprintf(text, size, "%.1fk", (double)count * 1e-3);
+    else
+        snprintf(text, size, "%llu", (unsigned long long)count);
+}
+
+void lc_report_text_row(FILE *out, const lc_row *row)
+{
+    char interval[64] = "", margin[16] = "exact", estimate[32] = "", paths[32];
+    format_count(paths, sizeof paths, row->paths);
+    if (!row->exact) {
+        snprintf(estimate, sizeof estimate, "%.5f", row->ratio);
+        if (isfinite(row->low) && isfinite(row->high))
+            snprintf(interval, sizeof interval, "[%.5f, %.5f]", row->low, row->high);
+        else
+            snprintf(interval, sizeof interval, "(none yet)");
+        snprintf(margin, sizeof margin, "%.2f%%", 100 * row->margin);
+    }
+    fprintf(out, "%-10s %-18s %-20s %-9s %10s  %-22s %8s %9s", row->check, row->scene, row->estimator,
+            lc_row_verdict_name(row->verdict), estimate, interval, margin, paths);
+}
+
+static void print_trouble(FILE *out, const lc_row *row)
+{
+    fprintf(out, "    %s\n    expected: %s\n", row->reason, row->source);
+    if (row->tile_width)
+        fprintf(out, "    worst tile: %dx%d pixels at %d,%d: %.4g times what is expected there, p = 1e%.0f\n",
+                row->tile_width, row->tile_height, row->tile_x, row->tile_y, row->tile_ratio, row->tile_log10_p);
+    fprintf(out, "    again: %s\n", row->reproduce);
+}
+
+void lc_report_text(FILE *out, const lc_report *report)
+{
+    int counts[3] = {0, 0, 0};
+    lc_report_text_header(out);
+    for (int i = 0; i < report->count; ++i) {
+        const lc_row *row = &report->rows[i];
+        lc_report_text_row(out, row);
+        fputc('\n', out);
+        if (row->verdict != LC_ROW_PASS)
+            print_trouble(out, row);
+        ++counts[row->verdict];
+    }
+    fprintf(out, "\nestimate: mean of reflected light / what is expected, in the hardest of three channels; PASS: "
+                 "shown within 1 +- margin.\n");
+    fprintf(out, "%s", report->budget);
+    fprintf(out,
+            "%d rows: %d PASS, %d FAIL, %d UNDECIDED; %d pairs of estimator and scene not applicable; %.0f M paths; "
+            "suite %s, seed %llu\n",
+            report->count, counts[LC_ROW_PASS], counts[LC_ROW_FAIL], counts[LC_ROW_UNDECIDED], report->not_applicable,
+            (double)report->paths * 1e-6, report->suite, (unsigned long long)report->seed);
+}

@@ -1,0 +1,286 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The dyadic pyramid; see pyramid.h. Tiles are visited depth first, so that sums need no memory but the stack. */
+#include "verify/stats/pyramid.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "verify/stats/tails.h"
+
+/* What the visit knows of a level; quantities that a tile is compared with before anything costly is computed. */
+typedef struct level_state {
+    double log_tests;       /* ln(2 sides x tiles x levels) */
+    double weight;          /* lc_skew_weight() of the one-sided FAIL test of a tile */
+    double pooled[2];       /* skewness of an average tile */
+    double screen;          /* a tile with t <= screen cannot beat the worst one so far */
+    int screen_age;         /* the number of worst tiles when `screen` was computed */
+    double pass_df, pass_t; /* with df >= pass_df, t >= pass_t passes surely */
+    int blocked;            /* a tile was not shown to be within the margin */
+    lc_tile blocking;
+} level_state;
+
+typedef struct visit_state {
+    const lc_estimate *field;
+    int width, height;
+    const lc_pyramid_plan *plan;
+    lc_pyramid *out;
+    double pass_z, pass_weight;
+    int worst_count;
+    level_state level[LC_LEVELS];
+} visit_state;
+
+void lc_pyramid_plan_init(lc_pyramid_plan *plan, double alpha_fail, double alpha_pass)
+{
+    plan->alpha_fail = alpha_fail;
+    plan->alpha_pass = alpha_pass;
+    plan->guard = LC_GUARD_POOLED;
+    for (int l = 0; l < LC_LEVELS; ++l) {
+        plan->margin[l] = INFINITY;
+        plan->least[l] = LC_LEAST_SAMPLES;
+    }
+}
+
+int lc_pyramid_levels(int width, int height)
+{
+    if (width < 1 || height < 1 || width > LC_MAX_SIZE || height > LC_MAX_SIZE)
+        return 0;
+    int levels = 1;
+    while (1 << (levels - 1) < width || 1 << (levels - 1) < height)
+        ++levels;
+    return levels;
+}
+
+static lc_tile no_tile(void)
+{
+    lc_tile tile;
+    memset(&tile, 0, sizeof tile);
+    tile.level = -1;
+    tile.log_p = NAN;
+    return tile;
+}
+
+static int is_sound(const lc_estimate *e)
+{
+    const lc_arm_sums *a = &e->arm[0], *b = &e->arm[1];
+    double sum = fabs(e->difference) + fabs(e->expected) + e->tolerance + fabs(a->third) + fabs(b->third) + a->doubt +
+                 b->doubt + a->variance + b->variance + a->variance2 + b->variance2;
+    return sum < INFINITY && e->tolerance >= 0 && a->variance >= 0 && b->variance >= 0 && a->variance2 >= 0 &&
+           b->variance2 >= 0;
+}
+
+static lc_status check_plan(const lc_pyramid_plan *plan, int levels, lc_error *err)
+{
+    if (levels == 0)
+        return lc_fail(err, LC_BAD_INPUT, "size of a field, expected 1..%d", (int)LC_MAX_SIZE);
+    if (!(plan->alpha_fail > 0 && plan->alpha_fail < 1 && plan->alpha_pass > 0 && plan->alpha_pass < 0.5))
+        return lc_fail(err, LC_BAD_INPUT, "error budget %g, %g, expected probabilities above 0 and below 1, 0.5",
+                       plan->alpha_fail, plan->alpha_pass);
+    for (int l = 0; l < levels; ++l)
+        if (!(plan->margin[l] > 0))
+            return lc_fail(err, LC_BAD_INPUT, "margin %g of level %d, expected a number above 0", plan->margin[l], l);
+    return LC_OK;
+}
+
+/* A z such that P(Z >= z) >= exp(log_p): from ln P >= -z^2 / 2 - ln(sqrt(2 pi) (z + 1 / z)) where the quantile
+ * underflows. */
+static double z_below(double log_p)
+{
+    if (log_p >= log(0.5))
+        return 0;
+    if (log_p > -600)
+        return lc_normal_quantile(exp(log_p)) * (1 - 1e-9);
+    double top = sqrt(-2 * log_p);
+    return sqrt(-2 * log_p - 2 * log(2.5066282746310002 * (top + 1 / top)));
+}
+
+/* The smaller of own and pooled trust: raises a tile's skewness to that of the level's average tile. */
+static void guard(const visit_state *state, int level, lc_student *student)
+{
+    if (state->plan->guard == LC_GUARD_POOLED)
+        for (int side = 0; side < 2; ++side)
+            student->skew[side] = fmax(student->skew[side], state->level[level].pooled[side]);
+}
+
+static int side_of(const lc_student *s) { return s->difference < 0 ? LC_LOW : LC_HIGH; }
+
+static double tile_log_p(const visit_state *state, const lc_tile *tile)
+{
+    const lc_student *s = &tile->student;
+    int side = side_of(s);
+    double bound = side == LC_LOW ? -s->tolerance : s->tolerance, alpha = 0.5 * state->out->level[tile->level].alpha;
+    double log_p = lc_student_log_p(s, side, bound, alpha) + state->level[tile->level].log_tests;
+    return log_p > 0 ? 0 : log_p;
+}
+
+/* Keeps the tile if its corrected p is the smallest so far; most tiles are turned away before p is computed. */
+static void challenge_worst(visit_state *state, const lc_tile *tile)
+{
+    level_state *level = &state->level[tile->level];
+    lc_tile *worst = &state->out->worst;
+    const lc_student *s = &tile->student;
+    double t = (fabs(s->difference) - s->tolerance) / s->error;
+    if (worst->level >= 0) {
+        if (level->screen_age != state->worst_count) {
+            level->screen = z_below(worst->log_p - level->log_tests);
+            level->screen_age = state->worst_count;
+        }
+        if (t <= level->screen)
+            return;
+        const lc_student *w = &worst->student;
+        double worst_t = (fabs(w->difference) - w->tolerance) / w->error;
+        if (worst->level == tile->level && t <= worst_t && s->df <= w->df && s->skew[side_of(s)] >= w->skew[side_of(w)])
+            return;
+    }
+    double log_p = tile_log_p(state, tile);
+    if (worst->level < 0 || log_p < worst->log_p) {
+        *worst = *tile;
+        worst->log_p = log_p;
+        ++state->worst_count;
+    }
+}
+
+static int is_within(visit_state *state, int level, const lc_student *s)
+{
+    level_state *known = &state->level[level];
+    double alpha = state->plan->alpha_pass, margin = state->plan->margin[level];
+    double t = (margin - fabs(s->difference)) / s->error;
+    if (!(t > state->pass_z) || !(fmax(s->skew[LC_LOW], s->skew[LC_HIGH]) * state->pass_weight <= LC_SKEW_LIMIT))
+        return 0;
+    if (s->df >= known->pass_df && t >= known->pass_t)
+        return 1;
+    if (s->df < known->pass_df) { /* few times a level: the smallest df of a random sequence changes ln(n) times */
+        known->pass_df = s->df;
+        known->pass_t = lc_t_quantile(alpha / (2.01 * LC_RESERVE), s->df);
+    }
+    return lc_student_log_p(s, LC_LOW, margin, alpha) <= log(alpha) &&
+           lc_student_log_p(s, LC_HIGH, -margin, alpha) <= log(alpha);
+}
+
+static void judge_tile(visit_state *state, int l, int x, int y, const lc_estimate *sum)
+{
+    level_state *known = &state->level[l];
+    lc_level *level = &state->out->level[l];
+    int size = 1 << l, right = x + size < state->width ? x + size : state->width;
+    int bottom = y + size < state->height ? y + size : state->height;
+    lc_tile tile = {l, x, y, right - x, bottom - y, lc_estimate_student(sum), NAN};
+    guard(state, l, &tile.student);
+    const lc_student *s = &tile.student;
+    double least = (double)state->plan->least[l];
+    int usable = 0;
+    if (sum->arm[0].least < least || sum->arm[1].least < least || sum->arm[0].least < 2 || sum->arm[1].least < 2) {
+        ++level->few;
+    } else if (!s->testable) {
+        ++level->still;
+    } else {
+        usable = 1;
+        if (s->skew[side_of(s)] * known->weight <= LC_SKEW_LIMIT) {
+            ++level->tested;
+            challenge_worst(state, &tile);
+        } else {
+            ++level->skewed;
+        }
+    }
+    if (!known->blocked && state->plan->margin[l] < INFINITY && !(usable && is_within(state, l, s))) {
+        known->blocked = 1;
+        known->blocking = tile;
+    }
+    if (l == state->out->levels - 1) {
+        if (usable)
+            tile.log_p = tile_log_p(state, &tile);
+        state->out->whole = tile;
+    }
+}
+
+static void visit(visit_state *state, int l, int x, int y, lc_estimate *sum)
+{
+    if (l == 0) {
+        *sum = state->field[(size_t)y * (size_t)state->width + (size_t)x];
+    } else {
+        int half = 1 << (l - 1);
+        visit(state, l - 1, x, y, sum);
+        for (int child = 1; child < 4; ++child) {
+            int cx = x + (child & 1) * half, cy = y + (child >> 1) * half;
+            if (cx < state->width && cy < state->height) {
+                lc_estimate part;
+                visit(state, l - 1, cx, cy, &part);
+                lc_estimate_add(sum, &part);
+            }
+        }
+    }
+    judge_tile(state, l, x, y, sum);
+}
+
+/* Shares the budget out and computes what the levels' average tiles look like. */
+static void prepare(visit_state *state, const lc_estimate *image)
+{
+    lc_pyramid *out = state->out;
+    lc_student whole = lc_estimate_student(image);
+    for (int l = 0; l < out->levels; ++l) {
+        level_state *known = &state->level[l];
+        int size = 1 << l;
+        double tiles = (double)((state->width - 1) / size + 1) * ((state->height - 1) / size + 1);
+        out->level[l].tiles = (uint32_t)tiles;
+        out->level[l].alpha = state->plan->alpha_fail / out->levels / tiles;
+        known->weight = lc_skew_weight(0.5 * out->level[l].alpha);
+        known->log_tests = log(2 * tiles * out->levels);
+        known->screen_age = -1;
+        known->pass_df = known->pass_t = INFINITY;
+        for (int side = 0; side < 2; ++side)
+            known->pooled[side] = whole.testable ? whole.skew[side] * sqrt(tiles) : 0;
+    }
+    state->pass_z = lc_normal_quantile(state->plan->alpha_pass);
+    state->pass_weight = lc_skew_weight(state->plan->alpha_pass);
+}
+
+static void conclude(visit_state *state)
+{
+    lc_pyramid *out = state->out;
+    int declared = 0, within = 0;
+    for (int l = 0; l < out->levels; ++l) {
+        if (!(state->plan->margin[l] < INFINITY))
+            continue;
+        ++declared;
+        out->level[l].within = !state->level[l].blocked;
+        within += out->level[l].within;
+        if (state->level[l].blocked)
+            out->blocking = state->level[l].blocking;
+    }
+    if (out->worst.level >= 0 && out->worst.log_p <= log(state->plan->alpha_fail))
+        out->verdict = LC_FAIL;
+    else if (declared > 0 && within == declared)
+        out->verdict = LC_PASS;
+}
+
+lc_status lc_pyramid_judge(lc_pyramid *out, const lc_estimate *field, int width, int height,
+                           const lc_pyramid_plan *plan, lc_error *err)
+{
+    memset(out, 0, sizeof *out);
+    out->verdict = LC_GO_ON;
+    out->whole = out->worst = out->blocking = no_tile();
+    out->levels = lc_pyramid_levels(width, height);
+    lc_status status = check_plan(plan, out->levels, err);
+    if (status)
+        return status;
+
+    lc_estimate sum = lc_estimate_zero();
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const lc_estimate *e = &field[(size_t)y * (size_t)width + (size_t)x];
+            if (!is_sound(e))
+                return lc_fail(err, LC_BAD_INPUT,
+                               "pixel (%d, %d): difference %g, variances %g and %g, expected finite numbers", x, y,
+                               e->difference, e->arm[0].variance, e->arm[1].variance);
+            lc_estimate_add(&sum, e);
+        }
+    visit_state state;
+    memset(&state, 0, sizeof state);
+    state.field = field;
+    state.width = width;
+    state.height = height;
+    state.plan = plan;
+    state.out = out;
+    prepare(&state, &sum);
+    visit(&state, out->levels - 1, 0, 0, &sum);
+    conclude(&state);
+    return LC_OK;
+}
