@@ -107,6 +107,13 @@ lc_material lc_material_at(const lc_scene *scene, const lc_hit *hit);
  * mirror or glass has no value anywhere, only a weight. Lambert: albedo / pi on the side of wo, else black. */
 lc_rgb lc_bsdf_eval(const lc_scene *scene, const lc_hit *hit, lc_vec3 wi);
 
+/* Mirror and glass. `wo` and unit `n` may lie on either side of the surface; `ior` as in lc_material: index beyond / index on the side of wo.
+ * lc_fresnel: reflectance for unpolarised light, cos_i in [0, 1] the cosine of wo with the normal; 1 at total reflection (Born and Wolf,
+ * Principles of Optics, 1.5.2). lc_refract: where light comes from to leave along wo, by Snell; returns 0 at total reflection. */
+double lc_fresnel(double cos_i, double ior);
+lc_vec3 lc_reflect(lc_vec3 wo, lc_vec3 n);
+int lc_refract(lc_vec3 wo, lc_vec3 n, double ior, lc_vec3 *wi);
+
 /* Radiance that the surface itself emits from `hit` towards hit->wo [W sr^-1 m^-2]: front side only.
  * On a miss, that of the environment: black unless the scene has a sky. */
 lc_rgb lc_emission(const lc_scene *scene, const lc_hit *hit);
