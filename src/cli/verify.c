@@ -12,7 +12,7 @@
 typedef struct verify_arguments {
     const char *suite, *estimator, *check, *scene, *seed, *format, *report;
     double margin, budget;
-    int threads;
+    int threads, measure;
 } verify_arguments;
 
 static lc_status load_scene(lc_scene **out, const char *name, lc_error *err)
@@ -96,10 +96,18 @@ static lc_status write_folder(const char *folder, const lc_report *report, lc_er
     return status;
 }
 
+static void print_line(void *user, const char *text)
+{
+    (void)user;
+    printf("%s\n", text);
+}
+
 static lc_status verify(const verify_arguments *a, lc_error *err)
 {
     lc_verify_options options;
     lc_report report;
+    if (a->measure)
+        return lc_measure_cells(load_scene, print_line, NULL, err);
     lc_verify_options_init(&options);
     options.suite = lc_suite_find(a->suite);
     options.margin = a->margin;
@@ -150,6 +158,8 @@ static int run(const lc_command *self, int argc, char **argv)
         {0, "seed", LC_OPT_STRING, &a.seed, "N|random", "default 1; printed, and reproduces the run", 0, 0, NULL},
         {0, "threads", LC_OPT_INT, &a.threads, "N", "default: one a core; changes only the time", 1, 256, NULL},
         {0, "format", LC_OPT_CHOICE, &a.format, "text|json|junit", "default text", 0, 0, "text|json|junit"},
+        {0, "measure", LC_OPT_FLAG, &a.measure, NULL, "prints the noise of each cell, as verify/judge/suites.c has it",
+         0, 0, NULL},
         {0, "report", LC_OPT_STRING, &a.report, "DIR", "writes all formats there, too", 0, 0, NULL},
         {0, NULL, LC_OPT_FLAG, NULL, NULL, NULL, 0, 0, NULL},
     };

@@ -31,6 +31,7 @@ typedef struct lc_claim {
     lc_expect_fn *expect;      /* ... these values */
     int exact;                 /* 1: sample by sample, no statistics; `other` then draws the same numbers */
     int may_be_still;   /* declared: an estimator may have no variance here, and is then held to the values exactly */
+    int full_only;    /* 1: for the full suite only: too dear for the quick one, or told by another of its rows */
     double tolerance;   /* error of the expected values, relative to their mean; a difference below it is none */
     const char *source; /* of what is expected, in words */
 } lc_claim;

@@ -11,6 +11,7 @@
 #define CHECKS(X) \
     X(emission) \
     X(analytic) \
+    X(specular) \
     X(furnace) \
     X(equality)
 

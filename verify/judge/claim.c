@@ -143,11 +143,11 @@ static lc_status judge_exact(lc_row *row, lc_session *session, const lc_claim *c
     return LC_OK;
 }
 
-/* 1 when no pixel shows any variance beyond rounding. */
-static int is_still(const lc_film *film)
+/* 1 when no pixel that counts shows any variance beyond rounding. */
+static int is_still(const lc_film *film, const lc_expected *expected)
 {
     for (size_t i = 0; i < (size_t)film->width * (size_t)film->height; ++i)
-        for (int c = 0; c < 3; ++c) {
+        for (int c = 0; c < 3 && !expected->skip[i]; ++c) {
             const lc_moments *m = &film->pixels[i].c[c];
             if (m->m2 > 1e-24 * m->mean * m->mean * (double)film->pixels[i].n)
                 return 0;
@@ -161,8 +161,8 @@ static int is_still(const lc_film *film)
 static lc_status noise_of(double *c, lc_session *session, const lc_claim *claim, const lc_estimator *estimator,
                           lc_error *err)
 {
-    *c = claim->min_bounces == 1 && claim->max_bounces == 1
-             ? lc_cell_noise(lc_scene_description(claim->scene)->name, estimator->name)
+    *c = claim->min_bounces == 1 && lc_is_registered(estimator)
+             ? lc_cell_noise(lc_scene_description(claim->scene)->name, estimator->name, claim->max_bounces)
              : NAN;
     if (!isnan(*c))
         return LC_OK;
@@ -254,7 +254,7 @@ static lc_status judge_statistically(lc_row *row, lc_session *session, const lc_
             describe_bad(row, film->bad ? film : other, session->options->seed);
             return LC_OK;
         }
-        if (claim->may_be_still && expected && is_still(film)) {
+        if (claim->may_be_still && expected && is_still(film, expected)) {
             row->exact = 1;
             compare_exactly(row, film, NULL, expected, fmax(claim->tolerance, 1e-9));
             return LC_OK;
@@ -280,6 +280,8 @@ lc_status lc_judge_claim(lc_row *row, lc_session *session, const lc_claim *claim
     snprintf(row->reproduce, sizeof row->reproduce, "%s verify --suite %s -c %s -e %s --scene %s --seed %llu",
              o->program, o->suite->name, row->check, row->estimator, row->scene, (unsigned long long)o->seed);
     row->exact = claim->exact;
+    row->min_bounces = claim->min_bounces;
+    row->max_bounces = claim->max_bounces;
     if (claim->exact)
         return judge_exact(row, session, claim, err);
     lc_estimate *field = malloc(sizeof *field * (size_t)desc->width * (size_t)desc->height);
@@ -308,6 +310,13 @@ lc_status lc_compare_films(lc_row *row, const lc_film *a, const lc_film *b, doub
     snprintf(row->scene, sizeof row->scene, "%s", a->scene[0] ? a->scene : "(unknown)");
     snprintf(row->estimator, sizeof row->estimator, "%s", a->estimator[0] ? a->estimator : "(unknown)");
     snprintf(row->source, sizeof row->source, "the second image");
+    if (result.scale == 0) {
+        row->verdict = LC_ROW_UNDECIDED;
+        row->ratio = row->low = row->high = NAN;
+        snprintf(row->reason, sizeof row->reason,
+                 "both images are exactly black: equal, but without variance nothing is shown");
+        return LC_OK;
+    }
     row->margin = margin;
     row->samples = a->count;
     row->paths = a->count * (uint64_t)a->width * (uint64_t)a->height;

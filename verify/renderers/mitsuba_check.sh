@@ -34,9 +34,10 @@ echo "| scene | estimator | verdict | ratio | interval | margin |"
 echo "|---|---|---|---|---|---|"
 for scene; do
     estimator=$(estimator_of "$scene")
-    "$program" render "$scene" -e "$estimator" -s 4096 --seed 7 -o "$work/ours.exr" >/dev/null || exit 4
+    "$program" render "$scene" -e "$estimator" -s 4096 --seed 7 -o "$work/ours.exr" >"$work/said" || exit 4
+    bounces=$(sed 's/.*bounces 0 to \([0-9]*\).*/\1/' "$work/said")
     "$python" verify/renderers/mitsuba_render.py "scenes/$scene.xml" "$work/theirs.exr" --spp $((replicates * spp)) --replicates "$replicates" \
-        --seed 1000 >/dev/null 2>"$work/log" || { cat "$work/log" >&2; exit 4; }
+        --bounces "$bounces" --seed 1000 >/dev/null 2>"$work/log" || { cat "$work/log" >&2; exit 4; }
     "$program" compare "$work/ours.exr" "$work/theirs.exr" --margin 1% >"$work/out"
     status=$?
     [ $status -ne 1 ] || worst=1
