@@ -52,16 +52,21 @@ static lc_status plan(const lc_check *self, lc_claims *claims, const lc_scene *s
             return LC_OK;
     if (emitters == 0 || (estimator->lobes & lc_scene_lobes(scene)) == 0 || estimator->max_bounces < 1)
         return LC_OK;
-    int is_deep = estimator->max_bounces > 1, is_cornell = strcmp(desc->name, "cornell") == 0;
-    int is_bright = strncmp(desc->name, "bright_", 7) == 0; /* lamps that uniform directions find: cheap */
+    /* The quick suite: direct light where there is no closed form, or several lights; path tracers where lamps are so large that uniform directions
+     * find them. The full suite has it all. */
+    static const char *const quick_direct[] = {"plane_tilted", "two_lights",    "five_lights",   "occluder",
+                                               "cornell",      "cornell_small", "cornell_large", "bright_room"};
+    int is_deep = estimator->max_bounces > 1, is_quick = 0;
+    for (size_t i = 0; i < sizeof quick_direct / sizeof quick_direct[0]; ++i)
+        is_quick |= strcmp(desc->name, quick_direct[i]) == 0 && (!is_deep || strcmp(desc->name, "bright_room") == 0);
     lc_status status = LC_OK;
     if (estimator->lobes & lc_scene_lobes(scene) & LC_DIFFUSE)
-        status = add(self, claims, scene, estimator, find_hub(scene, estimator, direct_hubs, 1, 1), 1,
-                     is_deep && !is_cornell && !is_bright, err);
+        status = add(self, claims, scene, estimator, find_hub(scene, estimator, direct_hubs, 1, 1), 1, !is_quick, err);
     int bounces = desc->max_bounces < estimator->max_bounces ? desc->max_bounces : estimator->max_bounces;
+    int is_quick_deep = strcmp(desc->name, estimator->lobes & LC_GLASS ? "bright_mirrors" : "bright_room") == 0;
     if (status == LC_OK && bounces > 1)
         status = add(self, claims, scene, estimator, find_hub(scene, estimator, deep_hubs, 3, bounces), bounces,
-                     !is_bright, err);
+                     !is_quick_deep, err);
     return status;
 }
 

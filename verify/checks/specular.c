@@ -43,7 +43,7 @@ static lc_status corridor_view(lc_rgb *value, int *kind, const lc_scene *scene, 
     return LC_OK;
 }
 
-enum { SLAB_BOUNCES = 8, BALL_BOUNCES = 6 };
+enum { SLAB_BOUNCES = 8, BALL_BOUNCES = 2 };
 
 static lc_status slab_view(lc_rgb *value, int *kind, const lc_scene *scene, const lc_hit *hit, void *user,
                            lc_error *err)
