@@ -164,6 +164,32 @@ static double cube_share(lc_vec3 s, int bin)
     return side[bin / 32] / (2 * (side[0] + side[1] + side[2])) / 16;
 }
 
+/* A strip that is never reached would hardly show in the bins: u and v of the standard shape go from end to end. */
+typedef struct extent {
+    double least[3], most[3];
+} extent;
+
+static void extend(extent *e, lc_shape_kind kind, lc_vec3 p)
+{
+    double c[3] = {p.x, p.y, p.z};
+    if (kind == LC_DISK || kind == LC_SPHERE) {
+        c[0] = atan2(p.y, p.x) / LC_PI;
+        c[1] = kind == LC_DISK ? 2 * (p.x * p.x + p.y * p.y) - 1 : p.z;
+    }
+    for (int i = 0; i < 3; ++i) {
+        e->least[i] = fmin(e->least[i], c[i]);
+        e->most[i] = fmax(e->most[i], c[i]);
+    }
+}
+
+/* P(a strip of 1e-3 stays empty) = exp(-20) at most. */
+static void ck_extent(const extent *e, lc_shape_kind kind)
+{
+    for (int i = 0; i < (kind == LC_CUBE ? 3 : 2); ++i)
+        ck_assert_msg(e->least[i] < -0.998 && e->most[i] > 0.998, "shape %d, axis %d: only [%g, %g]", (int)kind, i,
+                      e->least[i], e->most[i]);
+}
+
 static void try_shape(const shape_case *c, int flip, uint64_t seed)
 {
     double seen[96] = {0}, expected[96];
@@ -180,12 +206,15 @@ static void try_shape(const shape_case *c, int flip, uint64_t seed)
     lc_scene *scene = build_scene(&desc);
     ck_assert_double_eq_tol(lc_scene_emitting_area(scene), c->area, 1e-12 * c->area);
     lc_hit from = {.valid = 1, .p = {1, 1, 1}, .n = {0, 0, 1}, .wo = {0, 0, 1}};
+    extent reached = {{1, 1, 1}, {-1, -1, -1}};
     for (int i = 0; i < SAMPLES; ++i) {
         lc_sampler sampler;
         lc_light_sample light;
         lc_sampler_start(&sampler, seed, 0, 0, (uint32_t)i);
         lc_light_sample_one(scene, 0, &from, &sampler, &light);
-        int bin = c->bin(lc_affine_point(&inverse, light.p));
+        lc_vec3 local = lc_affine_point(&inverse, light.p);
+        int bin = c->bin(local);
+        extend(&reached, c->kind, local);
         ck_assert_int_ge(bin, 0);
         ++seen[bin];
         /* What comes with the point. */
@@ -200,6 +229,7 @@ static void try_shape(const shape_case *c, int flip, uint64_t seed)
         else
             ck_assert_double_eq_tol(lc_dot(light.n, lc_affine_vector(&turn, lc_vec(0, 0, flip ? -1 : 1))), 1, 1e-12);
     }
+    ck_extent(&reached, c->kind);
     for (int i = 0; i < c->bins; ++i)
         expected[i] = SAMPLES * (c->kind == LC_CUBE ? cube_share(c->size, i) : 1.0 / c->bins);
     ck_assert_int_eq(lc_chi_square_test(&chi, seen, expected, (size_t)c->bins, 5, 0, &err), LC_OK);

@@ -26,5 +26,6 @@ Suite *lc_suite_analytic_direct(void);
 Suite *lc_suite_sampler(void);
 Suite *lc_suite_warp(void);
 Suite *lc_suite_camera(void);
+Suite *lc_suite_accel(void);
 
 #endif
