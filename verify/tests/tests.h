@@ -27,5 +27,7 @@ Suite *lc_suite_sampler(void);
 Suite *lc_suite_warp(void);
 Suite *lc_suite_camera(void);
 Suite *lc_suite_accel(void);
+Suite *lc_suite_surface(void);
+Suite *lc_suite_render(void);
 
 #endif
