@@ -88,7 +88,7 @@ static void finish_tile(job *j, int reports)
     int done = ++j->done;
     pthread_mutex_unlock(&j->lock);
     if (reports && j->options->progress)
-        j->options->progress(j->options->user, (double)done * j->options->shards / j->tiles);
+        j->options->progress(j->options->user, fmin((double)done * j->options->shards / j->tiles, 1.0));
 }
 
 static void report_bad(job *j, const bad_samples *bad)
@@ -142,6 +142,8 @@ static lc_status check_options(const lc_film *film, const lc_scene *scene, const
         return lc_fail(err, LC_BAD_INPUT,
                        "%s: samples %llu to %llu of a pixel, expected at least one and at most 2^32 - 1", scene_name,
                        (unsigned long long)o->first, (unsigned long long)(o->first + o->count));
+    if (o->shards > LC_MAX_SHARDS)
+        return lc_fail(err, LC_BAD_INPUT, "%s: %d shards, expected at most %d", scene_name, o->shards, LC_MAX_SHARDS);
     if (o->shards > 1 && (o->shard < 0 || o->shard >= o->shards))
         return lc_fail(err, LC_BAD_INPUT, "%s: shard %d of %d, expected 0 to %d", scene_name, o->shard, o->shards,
                        o->shards - 1);
@@ -178,6 +180,8 @@ lc_status lc_render(lc_film *film, const lc_scene *scene, const lc_estimator *es
     work(&j, 1);
     for (int i = 0; i < started; ++i)
         pthread_join(threads[i], NULL);
+    if (o.progress)
+        o.progress(o.user, 1.0);
 
     if (film->count == 0) {
         film->first = o.first;

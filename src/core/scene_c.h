@@ -57,12 +57,12 @@ struct lc_scene {
 typedef struct lc_accel lc_accel;
 lc_status lc_accel_build(lc_accel **out, const lc_scene *scene, lc_error *err);
 void lc_accel_free(lc_accel *accel);
-/* The first hit from `o` along unit `d`; `from_part` is the part it starts on, with normal `from_n`, or -1. Fills p, n, distance, shape, part. */
+/* The first hit from `o` along unit `d`; `from_part` is the part it starts on, or -1. Fills p, n, distance, shape, part. */
 int lc_accel_intersect(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, lc_vec3 d, double time, int from_part,
-                       lc_vec3 from_n, lc_hit *hit);
+                       lc_hit *hit);
 /* Whether something lies strictly between `o` and `q` (q on part `to_part` with normal to_n, or -1), or along unit `q` to infinity. */
-int lc_accel_occluded(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, int from_part, lc_vec3 from_n, lc_vec3 q,
-                      int to_part, lc_vec3 to_n, int to_infinity, double time);
+int lc_accel_occluded(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, int from_part, lc_vec3 q, int to_part,
+                      lc_vec3 to_n, int to_infinity, double time);
 
 /* warp.c */
 void lc_tangents(lc_vec3 n, lc_vec3 *s, lc_vec3 *t);

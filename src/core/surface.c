@@ -37,7 +37,7 @@ void lc_intersect(const lc_scene *scene, const lc_ray *ray, lc_hit *hit)
 {
     hit->wo = lc_neg(ray->d);
     hit->time = ray->time;
-    hit->valid = lc_accel_intersect(scene->accel, scene, ray->o, ray->d, ray->time, -1, ray->d, hit);
+    hit->valid = lc_accel_intersect(scene->accel, scene, ray->o, ray->d, ray->time, -1, hit);
     if (scene->log)
         log_hit(scene, "camera ray hits", hit);
 }
@@ -46,8 +46,7 @@ int lc_trace(const lc_scene *scene, const lc_hit *from, lc_vec3 wi, lc_hit *next
 {
     lc_hit hit = *from;
     hit.wo = lc_neg(wi);
-    hit.valid =
-        from->valid && lc_accel_intersect(scene->accel, scene, from->p, wi, from->time, from->part, from->n, &hit);
+    hit.valid = from->valid && lc_accel_intersect(scene->accel, scene, from->p, wi, from->time, from->part, &hit);
     if (scene->log)
         log_hit(scene, "ray hits", &hit);
     *next = hit;

@@ -23,5 +23,11 @@ Suite *lc_suite_stats(void);
 Suite *lc_suite_stats_estimate(void);
 Suite *lc_suite_stats_pyramid(void);
 Suite *lc_suite_analytic_direct(void);
+Suite *lc_suite_sampler(void);
+Suite *lc_suite_warp(void);
+Suite *lc_suite_camera(void);
+Suite *lc_suite_accel(void);
+Suite *lc_suite_surface(void);
+Suite *lc_suite_render(void);
 
 #endif
