@@ -62,4 +62,5 @@ const lc_check lc_check_furnace = {
     "one reflection inside a Lambertian sphere of any emission and albedo",
     "Jacquez and Kuppenheim, Theory of the integrating sphere, JOSA 45, 1955",
     plan,
+    NULL,
 };
