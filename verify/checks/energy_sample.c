@@ -14,10 +14,10 @@ enum { RINGS = 8, SECTORS = 8, SIDE = RINGS * SECTORS, CELLS = 2 * SIDE + LC_WAY
 static const double cosines[] = {0.01, 0.03, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9, 0.97, 0.999, 1};
 enum { VIEWS = sizeof cosines / sizeof cosines[0] };
 
-/* Pearson's statistic has a heavier tail than chi-square's. Where every cell expects LEAST or more, the worst case is a single rare cell,
- * and exact binomial sums give at most 30 times the nominal p at 1e-12, 60 at 1e-13. So its level is divided by this. */
+/* Pearson's statistic has a heavier tail than chi-square's. Where cells expect LEAST, the exact tail of 1 to 64 Poisson cells (convolution)
+ * is at most 4 times the nominal one at 1e-9, 14 times at 1e-13; a single rare cell is the worst. So the level is divided by RESERVE. */
 enum { LEAST = 256 };
-#define RESERVE 1000.0
+#define RESERVE 100.0
 
 typedef struct counts {
     double observed[CELLS], expected[CELLS];
