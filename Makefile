@@ -45,8 +45,8 @@ ifdef WERROR
 WARN += -Werror
 endif
 ifdef SANITIZE
-CFLAGS += -fsanitize=$(SANITIZE) -fno-omit-frame-pointer -fno-sanitize-recover=all
-LDFLAGS += -fsanitize=$(SANITIZE)
+override CFLAGS += -fsanitize=$(SANITIZE) -fno-omit-frame-pointer -fno-sanitize-recover=all
+override LDFLAGS += -fsanitize=$(SANITIZE)
 endif
 # No -ffast-math: it would break the checks for NaN. No fused multiply-add: the same bits from gcc and clang.
 ALL_CFLAGS := $(WARN) $(CFLAGS) -ffp-contract=off -D_POSIX_C_SOURCE=200809L -I. -Isrc -Isrc/core $(NEEDS_CFLAGS) -pthread -MMD -MP

@@ -219,6 +219,7 @@ struct image {
     int block_w, block_h; /* largest part that is decoded at once */
     int has[CHANNELS];
     union sample *buffer; /* one block, a plane for each channel */
+    int samples_type;     /* EXR_PIXEL_UINT or _FLOAT */
     size_t plane;         /* samples of a plane */
 };
 
@@ -248,13 +249,17 @@ static lc_status find_channels(struct image *image, exr_const_context_t exr, str
     for (int i = 0; i < list->num_channels; ++i) {
         const exr_attr_chlist_entry_t *entry = &list->entries[i];
         int c = channel_index(entry->name.str);
-        if (c < 0 || (c == SAMPLES) != (entry->pixel_type == EXR_PIXEL_UINT))
-            continue; /* another program's `samples` may be anything */
+        if (c < 0 || (c != SAMPLES && entry->pixel_type == EXR_PIXEL_UINT))
+            continue;
         if (entry->x_sampling != 1 || entry->y_sampling != 1)
             return lc_fail(stream->err, LC_BAD_INPUT, "%s: channel %s is subsampled, expected all pixels", stream->path,
                            channel_names[c]);
         image->has[c] = 1;
+        if (c == SAMPLES) /* programs that write one type only have it as a float */
+            image->samples_type = entry->pixel_type == EXR_PIXEL_UINT ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT;
     }
+    /* Without variances, another program's `samples` may be anything. */
+    image->has[SAMPLES] = image->has[SAMPLES] && image->has[VARIANCE];
     for (int c = MEAN; c < MEAN + 3; ++c)
         if (!image->has[c])
             return lc_fail(stream->err, LC_BAD_INPUT, "%s: no channel %s, expected R G B as half or float",
@@ -299,7 +304,7 @@ static void aim_channels(exr_decode_pipeline_t *pipe, const struct image *image,
         int c = channel_index(channel->channel_name);
         if (c < 0 || !image->has[c])
             continue; /* without a place to go it is skipped */
-        channel->user_data_type = c == SAMPLES ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT;
+        channel->user_data_type = c == SAMPLES ? (uint16_t)image->samples_type : EXR_PIXEL_FLOAT;
         channel->user_bytes_per_element = sizeof *image->buffer;
         channel->user_pixel_stride = sizeof *image->buffer;
         channel->user_line_stride = (int32_t)((size_t)row * sizeof *image->buffer);
@@ -307,12 +312,20 @@ static void aim_channels(exr_decode_pipeline_t *pipe, const struct image *image,
     }
 }
 
+/* A number of samples, stored as an integer or as a float; 0 (unknown) for a float that is none. */
+static uint64_t count_of(const union sample *in, int type)
+{
+    if (type == EXR_PIXEL_UINT)
+        return in->u;
+    return in->f >= 1 && in->f <= 4294967040.0f ? (uint64_t)in->f : 0;
+}
+
 static lc_status take_pixel(lc_film *film, const struct image *image, int x, int y, const union sample *in,
                             const struct stream *stream)
 {
     lc_pixel *pixel = &film->pixels[(size_t)y * (size_t)film->width + (size_t)x];
     int finite = 1;
-    pixel->n = image->has[SAMPLES] ? in[SAMPLES * image->plane].u : 0;
+    pixel->n = image->has[SAMPLES] ? count_of(&in[SAMPLES * image->plane], image->samples_type) : 0;
     double n = (double)pixel->n;
     for (int c = 0; c < 3; ++c) {
         double mean = in[(size_t)(MEAN + c) * image->plane].f;

@@ -156,11 +156,8 @@ int lc_body_hides_point(const lc_body *body, lc_vec3 target)
     if (isinf(distance))
         return 0;
     if (body->kind == LC_BODY_BALL) {
-        int side = lc_body_side(body);
         double across = lc_length(lc_cross(body->v[0], d)), along = lc_dot(body->v[0], d);
-        if (side > 0 && (across >= body->radius || along <= 0))
-            return 0;
-        if (side == 0 && along <= LC_TOUCH * body->radius)
+        if (lc_body_side(body) > 0 && (across >= body->radius || along <= 0))
             return 0;
     }
     double depth = lc_body_depth(body, d);

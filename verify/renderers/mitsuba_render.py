@@ -5,8 +5,8 @@
     mitsuba_render.py SCENE.xml OUT.exr --spp N --seed N [--bounces K] [--min-bounces 0|1] [--size WxH]
                       [--replicates R] [--variant NAME] [-D NAME=VALUE]
 
-OUT.exr (float32) holds the mean in R G B, the variance of that mean in variance.R/G/B, and in `samples` the samples
-of a pixel. The variance comes from R independent replicates (seeds N, N+1, ...) of N/R samples each: it is itself
+OUT.exr (float32) holds the mean in R G B, the variance of that mean in variance.R/G/B, and in `samples` the number of
+replicates. The variance comes from R independent replicates (seeds N, N+1, ...) of N/R samples each: it is itself
 known to about sqrt(2/(R-1)). --bounces counts scattering events, so max_depth = bounces + 1; -1 has no limit.
 rr_depth lies above that: no Russian roulette. --min-bounces 1 leaves out directly visible emission, by subtracting
 a max_depth = 1 render in each replicate, so that the variance accounts for it; pixels on a lamp's edge may come out
@@ -120,7 +120,8 @@ def main():
         parameters["film.crop_offset"] = [0, 0]
         parameters.update()
     mean, variance = render(mi, np, scene, args)
-    samples = np.full(mean.shape[:2] + (1,), args.spp)
+    # A sample, to whoever reads the file, is what the variance was measured from: one replicate.
+    samples = np.full(mean.shape[:2] + (1,), args.replicates)
     pixels = np.concatenate([mean, variance, samples], axis=2).astype(np.float32)
     names = ["R", "G", "B", "variance.R", "variance.G", "variance.B", "samples"]
     bitmap = mi.Bitmap(np.ascontiguousarray(pixels), mi.Bitmap.PixelFormat.MultiChannel, names)

@@ -169,6 +169,15 @@ START_TEST(disk_and_sphere)
     ASSERT_CLOSE(direct(s, lc_vec(1, 0.2, -0.2), up), first, 1e-13);
     lc_rgb e;
     ck_assert_int_eq(lc_direct_irradiance(&e, &s->desc, centre, up, NULL), LC_BAD_INPUT);
+    lc_vec3 wall = {1, 0.2, -0.2}, tilted = {0.6, 0, 0.8};
+    ck_assert_int_eq(lc_direct_irradiance(&e, &s->desc, wall, tilted, NULL), LC_BAD_INPUT);
+    add_scaled(s, LC_SPHERE, lc_vec(0.1, 0.1, 0.1), centre, 0);
+    ck_assert_int_eq(lc_direct_irradiance(&e, &s->desc, wall, up, NULL), LC_BAD_INPUT);
+    /* one colour, a tilted receiver on the wall, a ball inside */
+    s->shapes[0].radiance.is_checkerboard = 0;
+    s->shapes[0].radiance.color[0] = lc_color(4, 2, 0);
+    double seen = (1 + 0.8) / 2 - lc_sphere_factor(centre, 0.1, wall, tilted);
+    ASSERT_CLOSE(direct(s, wall, tilted), 4 * LC_PI * seen, 1e-10);
     free(s);
 }
 END_TEST
@@ -257,6 +266,31 @@ START_TEST(refusals_name_the_place)
 }
 END_TEST
 
+START_TEST(flat_shapes_hide_points)
+{
+    /* a light right above the foot, and between them the corner (-1, -1) of a parallelogram, or the rim of an ellipse
+     * through the same corner: a little larger it hides, a little smaller it does not */
+    const lc_shape_kind kinds[] = {LC_RECTANGLE, LC_DISK, LC_CUBE};
+    for (int k = 0; k < 3; ++k)
+        for (int flip = 0; flip < 2; ++flip)
+            for (int hit = 0; hit < 2; ++hit) {
+                struct scene *s = scene_new();
+                s->desc.point_count = 1;
+                s->point.position = lc_vec(0, 0, 2);
+                s->point.intensity = lc_color(8, 4, 0);
+                double reach = (hit ? 1.01 : 0.99) * (kinds[k] == LC_DISK ? sqrt(2.0) : 1);
+                lc_vec3 a = lc_scale(reach, lc_vec(0.5, 0, 0)), b = lc_scale(reach, lc_vec(0.1, 0.2, 0.05));
+                lc_vec3 o = {0.6, 0.2, 1}, z = {0, 0, 0.01};
+                lc_shape_desc *shape = add(s, kinds[k], a, b, z, o, 0);
+                shape->flip_normals = flip;
+                if (flip) /* and turned by hand as well: no side lets light through */
+                    shape->to_world.m[2][2] = -0.01;
+                ASSERT_CLOSE(1 + direct(s, foot, up), 1 + (hit ? 0 : 2), 1e-14);
+                free(s);
+            }
+}
+END_TEST
+
 /* ---- what hides ------------------------------------------------------------------------------------------------ */
 
 START_TEST(plates_hide_exactly)
@@ -332,6 +366,11 @@ START_TEST(balls_hide_exactly)
         plate->to_world.m[i][i] = 10;
     ASSERT_CLOSE(direct(s, foot, up), LC_PI / 25, 1e-9);
     ck_assert_double_le(direct(s, lc_vec(0, 0, -2), up), 1e-12);
+    /* from within a ball one sees no lamp outside */
+    plate->to_world.m[2][3] = 0;
+    for (int i = 0; i < 3; ++i)
+        plate->to_world.m[i][i] = 1;
+    ck_assert_double_le(direct(s, foot, up), 1e-12);
     free(s);
 }
 END_TEST
@@ -365,6 +404,39 @@ START_TEST(clip_and_scan_agree)
         partial += clipped > 0.01 * whole && clipped < 0.99 * whole;
     }
     ck_assert_int_gt(partial, 20);
+}
+END_TEST
+
+/* Two plates that leave a gap of a few thousandths of the lamp: a quadrature that trusts its samples never sees it. */
+START_TEST(narrow_gaps_are_found)
+{
+    unsigned state = 21;
+    int open = 0;
+    for (int i = 0; i < 300; ++i) {
+        lc_vec3 normal = {uniform(&state) - 0.5, uniform(&state) - 0.5, 1};
+        lc_receiver receiver = lc_receiver_at(foot, lc_normalize(normal));
+        lc_vec3 q[4], turn = direction(&state);
+        lc_body body[3];
+        parallelogram_about(q, lc_vec(0, 0, 4), lc_vec(0, 1, 0), lc_vec(1, 0, 0));
+        body[0] = lc_body_polygon(&receiver, q, 4, 0);
+        for (int k = 0; k < 2; ++k) {
+            /* edges that run along `edge`, tilted a little, on opposite sides */
+            double angle = 2 * LC_PI * turn.x + (i % 2 ? 0.01 : 0.1) * uniform(&state), side = k ? 1 : -1;
+            lc_vec3 edge = {cos(angle), sin(angle), 0}, out = {-sin(angle), cos(angle), 0};
+            double apart = 1 + (i % 2 ? 0.0005 : 0.02) * uniform(&state);
+            lc_vec3 middle = lc_add(lc_scale(side * apart, out), lc_vec(0, 0, 2 + 0.1 * k));
+            parallelogram_about(q, middle, lc_scale(3, edge), out);
+            body[k + 1] = lc_body_polygon(&receiver, q, 4, k + 1);
+        }
+        const lc_body *list[2] = {&body[1], &body[2]};
+        double clipped, scanned, whole = lc_polygon_factor_above(body[0].v, body[0].count, up);
+        ck_assert_int_eq(lc_clip_factor(&clipped, &body[0], list, 2, NULL), LC_OK);
+        ck_assert_int_eq(lc_scan_factor(&scanned, &body[0], list, 2, NULL), LC_OK);
+        ck_assert_msg(fabs(clipped - scanned) <= 1e-11 * whole, "case %d: clipped %.15g, scanned %.15g of %.15g", i,
+                      clipped, scanned, whole);
+        open += clipped > 0 && clipped < 0.1 * whole;
+    }
+    ck_assert_int_gt(open, 100);
 }
 END_TEST
 
@@ -503,11 +575,13 @@ Suite *lc_suite_analytic_direct(void)
     tcase_add_test(lamps, cube_is_its_visible_faces);
     tcase_add_test(lamps, disk_and_sphere);
     tcase_add_test(lamps, points_directions_and_sky);
+    tcase_add_test(lamps, flat_shapes_hide_points);
     tcase_add_test(lamps, checkerboard_rectangle);
     tcase_add_test(lamps, refusals_name_the_place);
     tcase_add_test(hiders, plates_hide_exactly);
     tcase_add_test(hiders, balls_hide_exactly);
     tcase_add_test(hiders, clip_and_scan_agree);
+    tcase_add_test(hiders, narrow_gaps_are_found);
     tcase_add_test(hiders, irradiance_is_linear_in_the_normal);
     tcase_add_test(hiders, room_matches_brute_force);
     tcase_add_test(hiders, scale_and_place_do_not_matter);

@@ -1,0 +1,49 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+#
+# mitsuba_check.sh [SCENE ...]: every scene (or these) in Mitsuba 3 and here, whole image with L_0, compared within the joint error bars
+# at every scale. Prints a table in Markdown; exit status 1 where two renders differ.
+#
+#   PYTHON=python3   an interpreter that can import mitsuba and numpy
+#   REPLICATES=256   Mitsuba's independent renders, from which its variance comes
+#   SPP=4            samples of each
+set -u
+cd "$(dirname "$0")/../.." || exit 4
+python=${PYTHON:-python3}
+replicates=${REPLICATES:-256}
+spp=${SPP:-4}
+program=build/lightcheck
+work=$(mktemp -d) || exit 4
+trap 'rm -rf "$work"' EXIT
+"$python" -c 'import mitsuba, numpy' 2>/dev/null || {
+    echo "mitsuba_check.sh: $python cannot import mitsuba and numpy; pip install mitsuba numpy, or set PYTHON" >&2
+    exit 2
+}
+[ $# -gt 0 ] || set -- $("$program" list scenes)
+
+# The estimator that sees all of the scene, and so the same as a path tracer of its depth.
+estimator_of() {
+    case $1 in
+    sky*) echo hemisphere_direct ;;
+    *) echo light_direct ;;
+    esac
+}
+
+worst=0
+echo "| scene | estimator | verdict | ratio | interval | margin |"
+echo "|---|---|---|---|---|---|"
+for scene; do
+    estimator=$(estimator_of "$scene")
+    "$program" render "$scene" -e "$estimator" -s 4096 --seed 7 -o "$work/ours.exr" >/dev/null || exit 4
+    "$python" verify/renderers/mitsuba_render.py "scenes/$scene.xml" "$work/theirs.exr" --spp $((replicates * spp)) --replicates "$replicates" \
+        --seed 1000 >/dev/null 2>"$work/log" || { cat "$work/log" >&2; exit 4; }
+    "$program" compare "$work/ours.exr" "$work/theirs.exr" --margin 1% >"$work/out"
+    status=$?
+    [ $status -ne 1 ] || worst=1
+    awk -v scene="$scene" -v estimator="$estimator" 'NR == 2 {
+        verdict = $4; ratio = $5; interval = $6 " " $7; margin = $8
+        if ($6 == "(none") { interval = "(none yet)" }
+        print "| " scene " | " estimator " | " verdict " | " ratio " | " interval " | " margin " |" }
+        NR > 2 && NF { print "|  |  |  | " $0 " |  |  |" }' "$work/out"
+done
+exit $worst
