@@ -4,8 +4,9 @@
  */
 #include "core/scene_c.h"
 
-/* cos^2 of the angle of refraction, by Snell; <= 0 at total reflection. Written so that ior = 1 gives back cos^2 of the incident angle, to
- * the bit: 1 - sin^2 / ior^2 would leave a faint reflection of nothing. One function for all, so that they agree where it becomes total. */
+/* cos^2 of the angle of refraction, by Snell; <= 0 at total reflection. Written so that ior = 1 gives back cos^2 of
+ * the incident angle, to the bit: 1 - sin^2 / ior^2 would leave a faint reflection of nothing. One function for all,
+ * so that they agree where it becomes total. */
 static double cos2_refracted(double cos_i, double ior) { return ((ior - 1) * (ior + 1) + cos_i * cos_i) / (ior * ior); }
 
 double lc_fresnel(double cos_i, double ior)
@@ -36,7 +37,8 @@ int lc_refract(lc_vec3 wo, lc_vec3 n, double ior, lc_vec3 *wi)
 /* Ways on from a hit, in the order in which a random number chooses among them. */
 enum { DIFFUSE, MIRROR, GLASS_REFLECTS, GLASS_TRANSMITS, WAYS };
 
-/* What all lobes reflect, each in its largest channel: the quotient is at most this sum, and a blend keeps it at or below 1. */
+/* What all lobes reflect, each in its largest channel: the quotient is at most this sum, and a blend keeps it at or
+ * below 1. */
 static double reflectance(const lc_material *m) { return lc_rgb_max(m->diffuse) + lc_rgb_max(m->mirror) + m->glass; }
 
 /* The share of each way in that. */

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  *
- * checks.h: a check turns (scene, estimator) into claims; the judge decides them. One file = one kind of check = one line in registry.c.
- * A claim may also be about the host itself; then it brings its own decision, and the judge only gives it its share of the budget.
+ * checks.h: a check turns (scene, estimator) into claims; the judge decides them. One file = one kind of check = one
+ * line in registry.c. A claim may also be about the host itself; then it brings its own decision, and the judge only
+ * gives it its share of the budget.
  */
 #ifndef LC_CHECKS_H
 #define LC_CHECKS_H

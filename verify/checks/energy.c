@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  *
- * energy: the host's materials. A BSDF is nowhere negative, reciprocal, and sends back exactly the light that it should: a loss is found as
- * well as a gain. Its density integrates to 1 and is the one that its samples follow. Every estimator stands on these, so that
- * without this check an error here would look like an error of all.
+ * energy: the host's materials. A BSDF is nowhere negative, reciprocal, and sends back exactly the light that it
+ * should: a loss is found as well as a gain. Its density integrates to 1 and is the one that its samples follow. Every
+ * estimator stands on these, so that without this check an error here would look like an error of all.
  */
 #include <stdarg.h>
 #include <stdio.h>
@@ -14,74 +14,57 @@ const lc_bsdf_functions lc_bsdf_host = {lc_bsdf_eval, lc_bsdf_pdf, lc_bsdf_sampl
 
 /* ---- materials -------------------------------------------------------------------------------------------------- */
 
-#define BLACK \
-    { \
-        0, 0, 0 \
-    }
-#define WHITE \
-    { \
-        1, 1, 1 \
-    }
-#define GREY(x) \
-    { \
-        x, x, x \
-    }
-/* Texture of one colour, and a checkerboard of two. */
-#define PLAIN(...) \
-    { \
-        0, {__VA_ARGS__, BLACK}, {1, 1}, { 0, 0 } \
-    }
-#define CHECKS(...) \
-    { \
-        1, {__VA_ARGS__}, {1, 1}, { 0, 0 } \
-    }
-#define DARK \
-    { \
-        PLAIN(BLACK), BLACK, 0 \
-    }
-#define DIFFUSE(...) \
-    { \
-        PLAIN(__VA_ARGS__), BLACK, 0 \
-    }
-#define MIRROR(...) \
-    { \
-        PLAIN(BLACK), __VA_ARGS__, 0 \
-    }
-#define GLASS \
-    { \
-        PLAIN(BLACK), BLACK, 1 \
-    }
-#define RED \
-    { \
-        0.8, 0.1, 0.02 \
-    }
+/* Albedo [side][cell], of which a plain side has the first only; reflectance [side]; glass has no sides. An index that
+ * is not given is 1. */
+typedef struct material {
+    const char *name;
+    int is_checkered[2];
+    lc_rgb diffuse[2][2], mirror[2];
+    double glass, int_ior, ext_ior;
+} material;
 
-static const lc_material_desc materials[] = {
-    {"diffuse_black", 0, {DARK, DARK}, 1, 1},
-    {"diffuse_dark", 0, {DIFFUSE(GREY(0.02)), DARK}, 1, 1},
-    {"diffuse_half", 0, {DIFFUSE(GREY(0.5)), DARK}, 1, 1},
-    {"diffuse_red", 0, {DIFFUSE(RED), DARK}, 1, 1},
-    {"diffuse_white", 0, {DIFFUSE(WHITE), DIFFUSE(WHITE)}, 1, 1},
-    {"diffuse_two_sides", 0, {DIFFUSE(GREY(0.9)), DIFFUSE(RED)}, 1, 1},
-    {"checkerboard", 0, {{CHECKS(GREY(0.7), RED), BLACK, 0}, DARK}, 1, 1},
-    {"mirror", 0, {MIRROR(WHITE), MIRROR(WHITE)}, 1, 1},
-    {"mirror_tinted", 0, {MIRROR({0.95, 0.6, 0.2}), DARK}, 1, 1},
-    {"mirror_half", 0, {{PLAIN({0.4, 0.3, 0.2}), {0.5, 0.45, 0.4}, 0}, DARK}, 1, 1},
-    {"glass_1.0", 0, {GLASS, GLASS}, 1, 1},
-    {"glass_1.33", 0, {GLASS, GLASS}, 1.33, 1},
-    {"glass_1.5", 0, {GLASS, GLASS}, 1.5, 1},
-    {"glass_2.4", 0, {GLASS, GLASS}, 2.4, 1},
-    {"glass_in_water", 0, {GLASS, GLASS}, 1.5, 1.33},
-    {"blend",
-     0,
-     {{PLAIN({0.25, 0.2, 0.1}), {0.3, 0.28, 0.25}, 0.4}, {CHECKS(GREY(0.3), GREY(0.1)), {0.2, 0.2, 0.3}, 0.4}},
-     1.5,
-     1},
+static const material materials[] = {
+    {.name = "diffuse_black"},
+    {.name = "diffuse_dark", .diffuse = {{{0.02, 0.02, 0.02}}}},
+    {.name = "diffuse_half", .diffuse = {{{0.5, 0.5, 0.5}}}},
+    {.name = "diffuse_red", .diffuse = {{{0.8, 0.1, 0.02}}}},
+    {.name = "diffuse_white", .diffuse = {{{1, 1, 1}}, {{1, 1, 1}}}},
+    {.name = "diffuse_two_sides", .diffuse = {{{0.9, 0.9, 0.9}}, {{0.8, 0.1, 0.02}}}},
+    {.name = "checkerboard", .is_checkered = {1, 0}, .diffuse = {{{0.7, 0.7, 0.7}, {0.8, 0.1, 0.02}}}},
+    {.name = "mirror", .mirror = {{1, 1, 1}, {1, 1, 1}}},
+    {.name = "mirror_tinted", .mirror = {{0.95, 0.6, 0.2}}},
+    {.name = "mirror_half", .diffuse = {{{0.4, 0.3, 0.2}}}, .mirror = {{0.5, 0.45, 0.4}}},
+    {.name = "glass_1.0", .glass = 1},
+    {.name = "glass_1.33", .glass = 1, .int_ior = 1.33},
+    {.name = "glass_1.5", .glass = 1, .int_ior = 1.5},
+    {.name = "glass_2.4", .glass = 1, .int_ior = 2.4},
+    {.name = "glass_in_water", .glass = 1, .int_ior = 1.5, .ext_ior = 1.33},
+    {.name = "blend",
+     .is_checkered = {0, 1},
+     .diffuse = {{{0.25, 0.2, 0.1}}, {{0.3, 0.3, 0.3}, {0.1, 0.1, 0.1}}},
+     .mirror = {{0.3, 0.28, 0.25}, {0.2, 0.2, 0.3}},
+     .glass = 0.4,
+     .int_ior = 1.5},
 };
 enum { MATERIALS = sizeof materials / sizeof materials[0] };
 
 int lc_energy_count(void) { return MATERIALS; }
-const char *lc_energy_name(int i) { return i >= 0 && i < MATERIALS ? materials[i].id : NULL; }
+const char *lc_energy_name(int i) { return i >= 0 && i < MATERIALS ? materials[i].name : NULL; }
+
+static double index_of(double ior) { return ior > 0 ? ior : 1; }
+
+static void describe(lc_material_desc *out, const material *m)
+{
+    for (int side = 0; side < 2; ++side) {
+        out->side[side].diffuse = lc_texture_constant(m->diffuse[side][0]);
+        out->side[side].diffuse.color[1] = m->diffuse[side][1];
+        out->side[side].diffuse.is_checkerboard = m->is_checkered[side];
+        out->side[side].mirror = m->mirror[side];
+        out->side[side].glass = m->glass;
+    }
+    out->int_ior = index_of(m->int_ior);
+    out->ext_ior = index_of(m->ext_ior);
+}
 
 /* ---- stages ----------------------------------------------------------------------------------------------------- */
 
@@ -89,20 +72,20 @@ const char *lc_energy_name(int i) { return i >= 0 && i < MATERIALS ? materials[i
 static const lc_vec3 places[2] = {{0.3, 0.3, 0}, {-0.3, 0.3, 0}};
 
 /* One rectangle of the material, in a pose that has no axis in common with the world. */
-static lc_status build(lc_scene **out, const lc_material_desc *material, lc_error *err)
+static lc_status build(lc_scene **out, const material *m, lc_error *err)
 {
     lc_scene_desc desc;
     lc_scene_desc_init(&desc);
     lc_status status = LC_FAULT;
-    lc_material_desc *m = lc_scene_desc_add_material(&desc);
+    lc_material_desc *slot = lc_scene_desc_add_material(&desc);
     lc_shape_desc *shape = lc_scene_desc_add_shape(&desc);
-    if (!m || !shape) {
-        lc_fail(err, LC_FAULT, "out of memory for the material %s", material->id);
+    if (!slot || !shape) {
+        lc_fail(err, LC_FAULT, "out of memory for the material %s", m->name);
         goto cleanup;
     }
     lc_vec3 n = lc_normalize(lc_vec(1, -2, 3)), s = lc_normalize(lc_cross(lc_vec(2, 1, 1), n)), t = lc_cross(n, s);
     lc_affine pose = {{{s.x, t.x, n.x, 0.1}, {s.y, t.y, n.y, 0.2}, {s.z, t.z, n.z, -0.3}}};
-    *m = *material;
+    describe(slot, m);
     shape->kind = LC_RECTANGLE;
     shape->to_world = pose;
     shape->material = 0;
@@ -112,23 +95,23 @@ cleanup:
     return status;
 }
 
-/* What the description says, read without the host's own lc_material_at(). */
-static lc_status set_stage(lc_stage *stage, const lc_material_desc *m, int back, int cell, lc_error *err)
+/* What the table says, read without the host's own lc_material_at(). */
+static lc_status set_stage(lc_stage *stage, const material *m, int back, int cell, lc_error *err)
 {
     const lc_affine *pose = &lc_scene_description(stage->scene)->shapes[0].to_world;
     lc_vec3 n = lc_affine_vector(pose, lc_vec(0, 0, back ? -1 : 1));
     lc_ray ray = {lc_add(lc_affine_point(pose, places[cell]), n), lc_neg(n), 0};
     lc_intersect(stage->scene, &ray, &stage->hit);
     if (!stage->hit.valid)
-        return lc_fail(err, LC_FAULT, "energy: the ray missed the rectangle of %s", m->id);
+        return lc_fail(err, LC_FAULT, "energy: the ray missed the rectangle of %s", m->name);
     stage->n = back ? lc_neg(stage->hit.n) : stage->hit.n;
     stage->s = lc_affine_vector(pose, lc_vec(1, 0, 0));
     stage->t = lc_cross(stage->n, stage->s);
     stage->side = back ? "back" : "front";
-    stage->diffuse = m->side[back].diffuse.color[m->side[back].diffuse.is_checkerboard ? cell : 0];
-    stage->mirror = m->side[back].mirror;
-    stage->glass = m->side[back].glass;
-    stage->ior = back ? m->ext_ior / m->int_ior : m->int_ior / m->ext_ior;
+    stage->diffuse = m->diffuse[back][m->is_checkered[back] ? cell : 0];
+    stage->mirror = m->mirror[back];
+    stage->glass = m->glass;
+    stage->ior = index_of(back ? m->ext_ior : m->int_ior) / index_of(back ? m->int_ior : m->ext_ior);
     return LC_OK;
 }
 
@@ -172,18 +155,18 @@ static const char source[] = "closed forms: rho, r, Fresnel with R + T = 1; reci
 
 lc_status lc_energy_judge(lc_row *row, int i, const lc_bsdf_functions *bsdf, const lc_share *share, lc_error *err)
 {
-    const lc_material_desc *m = &materials[i];
+    const material *m = &materials[i];
     lc_stage stage[4]; /* two sides, two cells */
     lc_scene *scene;
     lc_status status = build(&scene, m, err);
     if (status != LC_OK)
         return status;
     snprintf(row->check, sizeof row->check, "energy");
-    snprintf(row->scene, sizeof row->scene, "%s", m->id);
+    snprintf(row->scene, sizeof row->scene, "%s", m->name);
     snprintf(row->estimator, sizeof row->estimator, "host");
     snprintf(row->source, sizeof row->source, "%s", source);
     row->margin = share->margin;
-    int cells = m->side[0].diffuse.is_checkerboard || m->side[1].diffuse.is_checkerboard ? 2 : 1, stages = 2 * cells;
+    int cells = m->is_checkered[0] || m->is_checkered[1] ? 2 : 1, stages = 2 * cells;
     for (int k = 0; k < stages && status == LC_OK; ++k) {
         stage[k].bsdf = bsdf;
         stage[k].scene = scene;
@@ -195,7 +178,9 @@ lc_status lc_energy_judge(lc_row *row, int i, const lc_bsdf_functions *bsdf, con
         row->verdict = LC_ROW_PASS;
         row->exact = 1; /* until something is drawn */
         for (int k = 0; k < stages && right; ++k)
-            right = lc_energy_exact(&stage[k]);
+            right = lc_energy_forms(&stage[k]);
+        for (int k = 0; k < stages && right; ++k) /* later: "there and back differ" does not say which is wrong */
+            right = lc_energy_way_back(&stage[k]);
         for (int k = 0; k < stages && right; ++k)
             right = lc_energy_sample(&stage[k], k, stages, share);
     }
@@ -206,7 +191,7 @@ lc_status lc_energy_judge(lc_row *row, int i, const lc_bsdf_functions *bsdf, con
 static lc_status decide(lc_row *row, const lc_claim *claim, const lc_share *share, lc_error *err)
 {
     for (int i = 0; i < MATERIALS; ++i)
-        if (strcmp(materials[i].id, claim->subject) == 0)
+        if (strcmp(materials[i].name, claim->subject) == 0)
             return lc_energy_judge(row, i, &lc_bsdf_host, share, err);
     return lc_fail(err, LC_FAULT, "energy: no material %s", claim->subject);
 }
@@ -218,7 +203,7 @@ static lc_status plan_host(const lc_check *self, lc_claims *claims, lc_error *er
         if (!claim)
             return lc_fail(err, LC_FAULT, "out of memory for the claims");
         claim->decide = decide;
-        claim->subject = materials[i].id;
+        claim->subject = materials[i].name;
         claim->source = source;
     }
     return LC_OK;

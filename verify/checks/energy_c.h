@@ -14,7 +14,7 @@ typedef struct lc_stage {
     lc_hit hit;             /* all but wo */
     lc_vec3 s, t, n;        /* right-handed; n on the viewer's side */
     const char *side;       /* "front", "back" */
-    lc_rgb diffuse, mirror; /* what the description says: albedo and reflectance seen from here, */
+    lc_rgb diffuse, mirror; /* what the table says: albedo and reflectance seen from here, */
     double glass, ior;      /* share of the glass lobe, index beyond / index here */
 } lc_stage;
 
@@ -47,16 +47,20 @@ int lc_stage_fail(const lc_stage *stage, const lc_hit *hit, const char *format, 
 #endif
     ;
 
-/* All ways on from the hit, by numbers that cover [0, 1) evenly; each sample is compared with pdf() and eval(). Returns 0 after a FAIL. */
+/* All ways on from the hit, by numbers that cover [0, 1) evenly; each sample is compared with pdf() and eval().
+ * Returns 0 after a FAIL. */
 int lc_stage_ways(lc_ways *out, const lc_stage *stage, const lc_hit *hit);
 /* Integral of pdf() over mu0 < cos <= mu1 (both >= 0 or both <= 0) and phi0 < azimuth <= phi1. */
 double lc_stage_pdf_integral(const lc_stage *stage, const lc_hit *hit, double mu0, double mu1, double phi0,
                              double phi1);
 
-/* The part without chance; returns 0 after a FAIL. */
-int lc_energy_exact(const lc_stage *stage);
+/* The part without chance: closed forms from one side, then whether delta lobes lead back to it; each returns 0
+ * after a FAIL. */
+int lc_energy_forms(const lc_stage *stage);
+int lc_energy_way_back(const lc_stage *stage);
 
-/* The part by chance. Its levels are split over `stages` of the row; adds to the row's numbers; returns 0 after a FAIL. */
+/* The part by chance. Its levels are split over `stages` of the row; adds to the row's numbers; returns 0 after a
+ * FAIL. */
 int lc_energy_sample(const lc_stage *stage, int index, int stages, const lc_share *share);
 
 #endif

@@ -14,8 +14,9 @@ enum { RINGS = 8, SECTORS = 8, SIDE = RINGS * SECTORS, CELLS = 2 * SIDE + LC_WAY
 static const double cosines[] = {0.01, 0.03, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9, 0.97, 0.999, 1};
 enum { VIEWS = sizeof cosines / sizeof cosines[0] };
 
-/* Pearson's statistic has a heavier tail than chi-square's. Where cells expect LEAST, the exact tail of 1 to 64 Poisson cells (convolution)
- * is at most 4 times the nominal one at 1e-9, 14 times at 1e-13; a single rare cell is the worst. So the level is divided by RESERVE. */
+/* Pearson's statistic has a heavier tail than chi-square's. Where cells expect LEAST, the exact tail of 1 to 64
+ * Poisson cells (convolution) is at most 4 times the nominal one at 1e-9, 14 times at 1e-13; a single rare cell is
+ * the worst. So the level is divided by RESERVE. */
 enum { LEAST = 256 };
 #define RESERVE 100.0
 
@@ -40,7 +41,8 @@ static int cell_of(const lc_stage *stage, const lc_hit *hit, const lc_scatter *s
     return (mu > 0 ? 0 : SIDE) + ring_of(mu) * SECTORS + sector;
 }
 
-/* From pdf() by quadrature, and from the probabilities of the delta lobes; way 0 holds what contradicts itself, and expects nothing. */
+/* From pdf() by quadrature, and from the probabilities of the delta lobes; way 0 holds what contradicts itself, and
+ * expects nothing. */
 static void expect_cells(double expected[CELLS], const lc_stage *stage, const lc_hit *hit, const lc_ways *ways,
                          double n)
 {
@@ -74,7 +76,8 @@ static void add(means *m, lc_rgb value)
     }
 }
 
-/* Draws from one view. A quotient above `most` breaks a promise of lc_bsdf_sample(), and the bound of the mean with it. */
+/* Draws from one view. A quotient above `most` breaks a promise of lc_bsdf_sample(), and the bound of the mean with
+ * it. */
 static int draw(counts *out, means *m, const lc_stage *stage, const lc_hit *hit, uint64_t n, double most, uint64_t seed,
                 uint32_t pixel)
 {
@@ -125,8 +128,8 @@ static int follows_pdf(const lc_stage *stage, const lc_hit *hit, const counts *c
                          views, test.statistic, test.df, test.log_p / log(10.0));
 }
 
-/* The mean over all views against the closed form. Bernstein's bound after Maurer and Pontil knows no variance beforehand and no shape, and
- * wants independent samples, not identically distributed ones. */
+/* The mean over all views against the closed form. Bernstein's bound after Maurer and Pontil knows no variance
+ * beforehand and no shape, and wants independent samples, not identically distributed ones. */
 static int mean_is_albedo(const lc_stage *stage, const lc_hit *hit, const means *m, double most, double alpha_fail,
                           double alpha_pass, double margin)
 {

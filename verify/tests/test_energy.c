@@ -276,7 +276,8 @@ END_TEST
 
 /* ---- levels ------------------------------------------------------------------------------------------------------- */
 
-/* Exact tail of (X - E)^2 / E of one Poisson cell, the worst case, where chi-square says 1e-13: the check divides its level by 100. */
+/* Exact tail of (X - E)^2 / E of one Poisson cell, the worst case, where chi-square says 1e-13: the check divides
+ * its level by 100. */
 START_TEST(chi_square_reserve_is_enough)
 {
     double mean = 256, low = 0, high = 200, tail = 0;
