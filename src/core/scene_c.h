@@ -68,6 +68,8 @@ int lc_accel_occluded(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, i
 void lc_tangents(lc_vec3 n, lc_vec3 *s, lc_vec3 *t);
 lc_vec3 lc_uniform_sphere(double u, double v);
 
+/* lc_material_at() without a word in the log. */
+lc_material lc_surface_material(const lc_scene *scene, const lc_hit *hit);
 /* What the front of a shape emits at p [W sr^-1 m^-2]. */
 lc_rgb lc_shape_radiance(const lc_scene *scene, int shape, int part, lc_vec3 p);
 /* Texture coordinates of a point on a shape, as Mitsuba 3 has them. */

@@ -109,4 +109,5 @@ const lc_check lc_check_analytic = {
     "direct light against closed forms, pixel by pixel",
     "Lambert 1760; Howell, A Catalog of Radiation Heat Transfer Configuration Factors; docs/checks.md",
     plan,
+    NULL,
 };

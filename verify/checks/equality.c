@@ -75,4 +75,5 @@ const lc_check lc_check_equality = {
     "estimators of the same integral agree",
     "Path Tracing (Bikker 2021-22): \"for N = infinity these yield the same result\"",
     plan,
+    NULL,
 };

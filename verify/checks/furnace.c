@@ -112,4 +112,5 @@ const lc_check lc_check_furnace = {
     "closed rooms: inside of a sphere of any emission and albedo, thermal furnace",
     "Jacquez and Kuppenheim, Theory of the integrating sphere, JOSA 45, 1955; Kirchhoff 1860",
     plan,
+    NULL,
 };

@@ -9,6 +9,7 @@
 #include "verify/checks/checks.h"
 
 #define CHECKS(X) \
+    X(energy) \
     X(emission) \
     X(analytic) \
     X(specular) \

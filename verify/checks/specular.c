@@ -148,4 +148,5 @@ const lc_check lc_check_specular = {
     "chains of mirrors and glass against closed forms, pixel by pixel",
     "Fresnel 1823; Stokes, Proc. R. Soc. 11, 1862; Veach 1997, section 5.2; docs/checks.md",
     plan,
+    NULL,
 };

@@ -269,9 +269,24 @@ static lc_status judge_statistically(lc_row *row, lc_session *session, const lc_
     return LC_OK;
 }
 
+static lc_status judge_host(lc_row *row, const lc_session *session, const lc_claim *claim, lc_error *err)
+{
+    const lc_verify_options *o = session->options;
+    lc_share share = {o->false_fail / session->rows, o->false_pass / session->rows, session->margin, o->seed};
+    snprintf(row->check, sizeof row->check, "%s", claim->check->name);
+    snprintf(row->scene, sizeof row->scene, "%s", claim->subject);
+    snprintf(row->estimator, sizeof row->estimator, "host");
+    snprintf(row->source, sizeof row->source, "%s", claim->source);
+    snprintf(row->reproduce, sizeof row->reproduce, "%s verify --suite %s -c %s --seed %llu", o->program,
+             o->suite->name, row->check, (unsigned long long)o->seed);
+    return claim->decide(row, claim, &share, err);
+}
+
 lc_status lc_judge_claim(lc_row *row, lc_session *session, const lc_claim *claim, lc_error *err)
 {
     const lc_verify_options *o = session->options;
+    if (claim->decide)
+        return judge_host(row, session, claim, err);
     const lc_scene_desc *desc = lc_scene_description(claim->scene);
     snprintf(row->check, sizeof row->check, "%s", claim->check->name);
     snprintf(row->scene, sizeof row->scene, "%s", desc->name);

@@ -24,7 +24,7 @@ static lc_status plan_pair(lc_claims *claims, int *not_applicable, const lc_scen
 {
     int before = claims->count;
     for (const lc_check *const *c = lc_checks; *c; ++c) {
-        lc_status status = (*c)->plan(*c, claims, scene, estimator, err);
+        lc_status status = (*c)->plan ? (*c)->plan(*c, claims, scene, estimator, err) : LC_OK;
         if (status != LC_OK)
             return status;
     }
@@ -55,8 +55,19 @@ static void drop_full_only(lc_claims *claims)
     claims->count = kept;
 }
 
+static lc_status plan_host(lc_claims *claims, lc_error *err)
+{
+    lc_status status = LC_OK;
+    for (const lc_check *const *c = lc_checks; *c && status == LC_OK; ++c)
+        if ((*c)->plan_host)
+            status = (*c)->plan_host(*c, claims, err);
+    return status;
+}
+
 static int is_selected(const lc_verify_options *o, const lc_claim *claim)
 {
+    if (claim->decide) /* whoever asks about one estimator or one scene does not ask about the host */
+        return !o->estimator && !o->scene && (!o->check || strcmp(o->check, claim->check->name) == 0);
     return (!o->estimator || o->estimator == claim->estimator) &&
            (!o->check || strcmp(o->check, claim->check->name) == 0) &&
            (!o->scene || strcmp(o->scene, lc_scene_description(claim->scene)->name) == 0);
@@ -102,6 +113,7 @@ lc_status lc_verify(lc_report *report, const lc_verify_options *options, lc_load
     report->false_fail = options->false_fail;
     report->false_pass = options->false_pass;
     snprintf(report->suite, sizeof report->suite, "%s", options->suite->name);
+    status = plan_host(&claims, err);
     for (int i = 0; lc_suite_scenes[i] && status == LC_OK; ++i) {
         status = load(&scenes[scene_count], lc_suite_scenes[i], err);
         if (status == LC_OK)

@@ -29,5 +29,7 @@ Suite *lc_suite_camera(void);
 Suite *lc_suite_accel(void);
 Suite *lc_suite_surface(void);
 Suite *lc_suite_render(void);
+Suite *lc_suite_bsdf(void);
+Suite *lc_suite_energy(void);
 
 #endif
