@@ -213,6 +213,18 @@ static lc_status judge_look(look_result *out, const lc_film *film, const lc_film
     return LC_OK;
 }
 
+/* The looks up to the planned samples, and one more in reserve. Where they are more than the budget pays for, the first
+ * ones go: without the last the row would end undecided by design. */
+static lc_looks row_looks(uint64_t planned)
+{
+    lc_looks looks = lc_looks_plan(LC_LEAST_SAMPLES, planned);
+    if (looks.first < LC_LEAST_SAMPLES)
+        looks.first = LC_LEAST_SAMPLES;
+    for (++looks.count; looks.count > LC_MOST_LOOKS; --looks.count)
+        looks.first *= 4;
+    return looks;
+}
+
 static lc_status judge_statistically(lc_row *row, lc_session *session, const lc_claim *claim, lc_estimate *field,
                                      lc_error *err)
 {
@@ -226,11 +238,8 @@ static lc_status judge_statistically(lc_row *row, lc_session *session, const lc_
         return status;
     row->margin = session->margin * fmax(1.0, c);
 
-    /* Both arms grow together, and one look more than planned is kept in reserve. */
-    lc_looks looks = lc_looks_plan(LC_LEAST_SAMPLES, lc_planned_samples(hypot(c, c_other), row->margin, pixels));
-    if (looks.first < LC_LEAST_SAMPLES)
-        looks.first = LC_LEAST_SAMPLES;
-    looks.count = looks.count < LC_MOST_LOOKS ? looks.count + 1 : LC_MOST_LOOKS;
+    /* Both arms grow together. */
+    lc_looks looks = row_looks(lc_planned_samples(hypot(c, c_other), row->margin, pixels));
     lc_budget budget = {session->options->false_fail, session->options->false_pass, session->rows, 3, LC_MOST_LOOKS};
     lc_pyramid_plan plan;
     lc_pyramid_plan_init(&plan, lc_budget_row_fail(&budget), lc_budget_row_pass(&budget));
