@@ -193,6 +193,7 @@ static lc_status judge_look(look_result *out, const lc_film *film, const lc_film
         /* Where nothing is expected, any light at all is wrong by infinitely many percent: the margin is then of what was seen. */
         double unit = scale > 0 ? scale : mean_of(film, NULL, skip, c);
         plan->margin[lc_pyramid_levels(film->width, film->height) - 1] = unit > 0 ? margin * unit : INFINITY;
+        plan->relative = other ? margin : 0;
         lc_status status = other ? lc_field_two(field, film, other, c, tolerance * scale, err)
                                  : lc_field_one(field, film, expected->rgb, c, tolerance * scale, err);
         for (size_t i = 0; skip && i < (size_t)film->width * (size_t)film->height; ++i)
