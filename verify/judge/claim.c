@@ -193,6 +193,7 @@ static lc_status judge_look(look_result *out, const lc_film *film, const lc_film
         /* Where nothing is expected, any light at all is wrong by infinitely many percent: the margin is then of what was seen. */
         double unit = scale > 0 ? scale : mean_of(film, NULL, skip, c);
         plan->margin[lc_pyramid_levels(film->width, film->height) - 1] = unit > 0 ? margin * unit : INFINITY;
+        plan->relative = other ? margin : 0;
         lc_status status = other ? lc_field_two(field, film, other, c, tolerance * scale, err)
                                  : lc_field_one(field, film, expected->rgb, c, tolerance * scale, err);
         for (size_t i = 0; skip && i < (size_t)film->width * (size_t)film->height; ++i)
@@ -213,6 +214,18 @@ static lc_status judge_look(look_result *out, const lc_film *film, const lc_film
     return LC_OK;
 }
 
+/* The looks up to the planned samples, and one more in reserve. Where they are more than the budget pays for, the first
+ * ones go: without the last the row would end undecided by design. */
+static lc_looks row_looks(uint64_t planned)
+{
+    lc_looks looks = lc_looks_plan(LC_LEAST_SAMPLES, planned);
+    if (looks.first < LC_LEAST_SAMPLES)
+        looks.first = LC_LEAST_SAMPLES;
+    for (++looks.count; looks.count > LC_MOST_LOOKS; --looks.count)
+        looks.first *= 4;
+    return looks;
+}
+
 static lc_status judge_statistically(lc_row *row, lc_session *session, const lc_claim *claim, lc_estimate *field,
                                      lc_error *err)
 {
@@ -226,11 +239,8 @@ static lc_status judge_statistically(lc_row *row, lc_session *session, const lc_
         return status;
     row->margin = session->margin * fmax(1.0, c);
 
-    /* Both arms grow together, and one look more than planned is kept in reserve. */
-    lc_looks looks = lc_looks_plan(LC_LEAST_SAMPLES, lc_planned_samples(hypot(c, c_other), row->margin, pixels));
-    if (looks.first < LC_LEAST_SAMPLES)
-        looks.first = LC_LEAST_SAMPLES;
-    looks.count = looks.count < LC_MOST_LOOKS ? looks.count + 1 : LC_MOST_LOOKS;
+    /* Both arms grow together. */
+    lc_looks looks = row_looks(lc_planned_samples(hypot(c, c_other), row->margin, pixels));
     lc_budget budget = {session->options->false_fail, session->options->false_pass, session->rows, 3, LC_MOST_LOOKS};
     lc_pyramid_plan plan;
     lc_pyramid_plan_init(&plan, lc_budget_row_fail(&budget), lc_budget_row_pass(&budget));

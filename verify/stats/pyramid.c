@@ -34,6 +34,7 @@ void lc_pyramid_plan_init(lc_pyramid_plan *plan, double alpha_fail, double alpha
     plan->alpha_fail = alpha_fail;
     plan->alpha_pass = alpha_pass;
     plan->guard = LC_GUARD_POOLED;
+    plan->relative = 0;
     for (int l = 0; l < LC_LEVELS; ++l) {
         plan->margin[l] = INFINITY;
         plan->least[l] = LC_LEAST_SAMPLES;
@@ -75,6 +76,8 @@ static lc_status check_plan(const lc_pyramid_plan *plan, int levels, lc_error *e
     if (!(plan->alpha_fail > 0 && plan->alpha_fail < 1 && plan->alpha_pass > 0 && plan->alpha_pass < 0.5))
         return lc_fail(err, LC_BAD_INPUT, "error budget %g, %g, expected probabilities above 0 and below 1, 0.5",
                        plan->alpha_fail, plan->alpha_pass);
+    if (!(plan->relative >= 0 && plan->relative < INFINITY))
+        return lc_fail(err, LC_BAD_INPUT, "relative margin %g, expected a number >= 0", plan->relative);
     for (int l = 0; l < levels; ++l)
         if (!(plan->margin[l] > 0))
             return lc_fail(err, LC_BAD_INPUT, "margin %g of level %d, expected a number above 0", plan->margin[l], l);
@@ -139,6 +142,18 @@ static void challenge_worst(visit_state *state, const lc_tile *tile)
     }
 }
 
+/* The same difference with the noise of a margin that was itself measured in arm b. */
+static lc_student with_noisy_margin(const lc_student *s, const lc_estimate *sum, double relative)
+{
+    lc_student wide = *s;
+    double a = sum->arm[0].variance, b = sum->arm[1].variance, factor = 1 + relative;
+    double stretch = sqrt((a + factor * factor * b) / (a + b)), skew = pow(factor / stretch, 3);
+    wide.error *= stretch;
+    wide.skew[LC_LOW] *= skew;
+    wide.skew[LC_HIGH] *= skew;
+    return wide;
+}
+
 static int is_within(visit_state *state, int level, const lc_student *s)
 {
     level_state *known = &state->level[level];
@@ -180,7 +195,8 @@ static void judge_tile(visit_state *state, int l, int x, int y, const lc_estimat
             ++level->skewed;
         }
     }
-    if (!known->blocked && state->plan->margin[l] < INFINITY && !(usable && is_within(state, l, s))) {
+    lc_student margin_aware = state->plan->relative > 0 ? with_noisy_margin(s, sum, state->plan->relative) : *s;
+    if (!known->blocked && state->plan->margin[l] < INFINITY && !(usable && is_within(state, l, &margin_aware))) {
         known->blocked = 1;
         known->blocking = tile;
     }

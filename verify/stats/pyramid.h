@@ -66,6 +66,8 @@ typedef enum lc_guard { LC_GUARD_POOLED, LC_GUARD_OWN } lc_guard;
 typedef struct lc_pyramid_plan {
     double alpha_fail, alpha_pass; /* of this pyramid */
     double margin[LC_LEVELS];      /* radiance, > 0; INFINITY: this level is not declared */
+    double relative; /* the margins are this multiple of arm b's measured mean, whose noise then enters PASS: a - (1 +- m)
+                        b has the variance of a and (1 + m)^2 that of b; 0: they are constants */
     uint64_t least[LC_LEVELS];     /* samples a pixel from which on the level takes part */
     lc_guard guard;
 } lc_pyramid_plan;
