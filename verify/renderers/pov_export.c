@@ -220,7 +220,9 @@ lc_status lc_pov_export(FILE *out, const lc_scene_desc *desc, const lc_pov_optio
     write_sky(&w);
     lc_pov_write_shapes(&w);
     if (options->mode != LC_POV_SPECULAR)
-        lc_pov_write_lights(&w);
+        status = lc_pov_write_lights(&w, err);
+    if (status != LC_OK)
+        return status;
     if (fflush(out) != 0 || ferror(out))
         return lc_fail(err, LC_FAULT, "%s: cannot write the scene for POV-Ray", desc->name);
     return LC_OK;

@@ -31,6 +31,6 @@ void lc_pov_write_shapes(const lc_pov_writer *w);
 
 /* pov_export_lights.c: point and directional lights, and the points that stand for lamps. */
 lc_status lc_pov_check_lights(const lc_pov_writer *w, lc_error *err);
-void lc_pov_write_lights(const lc_pov_writer *w);
+lc_status lc_pov_write_lights(const lc_pov_writer *w, lc_error *err);
 
 #endif

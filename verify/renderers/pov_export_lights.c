@@ -4,22 +4,16 @@
  *
  * A light_source fades as 2 / (1 + (d / FD)^2), which is 2 FD^2 / d^2 where FD << d. A piece A of a Lambertian lamp of radiance L irradiates
  * L A cos_light cos_surface / d^2, so it is a light_source of colour L A / (2 pi FD^2) times cos_light: a spotlight along the normal of
- * tightness 1, whose edge `radius 90 falloff 90` puts at the horizon. A lamp is cut into pieces of equal area with a light_source in the middle of
- * each: the midpoint rule, whose error falls as the square of the spacing. For rectangles POV-Ray's area_light does the cutting; its outer
- * points lie ON the edge of the lamp, so it is told a lamp smaller by (N - 1) / N.
+ * tightness 1, whose edge `radius 90 falloff 90` puts at the horizon.
+ *
+ * A lamp is a quadrature of such points: Gauss and Legendre's on rectangles; on disks theirs in the square of the radius and equal steps in angle;
+ * equal areas on spheres, half of which no point sees. POV-Ray's own area_light will not do: with area_illumination it multiplies the mean of
+ * the visibility by the mean of the light without shadows, and what is wanted is the mean of the product (23% too dark for a lamp that the
+ * horizon of a surface cuts at a quarter).
  */
+#include <gsl/gsl_integration.h>
+
 #include "verify/renderers/pov_export_c.h"
-
-typedef struct patch {
-    lc_vec3 p, n; /* in metres, n unit */
-    lc_rgb color;
-} patch;
-
-static lc_rgb lamp_color(const lc_pov_writer *w, const lc_shape_desc *shape, double area)
-{
-    double fade = LC_POV_FADE / w->unit;
-    return lc_rgb_scale(area / (2 * LC_PI * fade * fade), shape->radiance.color[0]);
-}
 
 static int is_lamp(const lc_shape_desc *shape) { return shape->emits && !lc_pov_is_black(shape->radiance.color[0]); }
 
@@ -28,7 +22,7 @@ static lc_vec3 column(const lc_shape_desc *shape, int j)
     return lc_vec(shape->to_world.m[0][j], shape->to_world.m[1][j], shape->to_world.m[2][j]);
 }
 
-/* Longest side or diameter of any lamp: what is cut into area_samples. */
+/* Longest side or diameter of any lamp: what gets area_samples. */
 static double longest_side(const lc_pov_writer *w)
 {
     double most = 0;
@@ -39,119 +33,159 @@ static double longest_side(const lc_pov_writer *w)
     return most;
 }
 
-static int pieces(const lc_pov_writer *w, double length, int least)
+static int points_along(const lc_pov_writer *w, double length)
 {
     int n = (int)ceil(w->options->area_samples * length / longest_side(w) - 1e-9);
-    return n < least ? least : n;
+    return n < 3 ? 3 : n;
 }
 
 /* ---- writing ------------------------------------------------------------------------------------------------------ */
 
-/* Location, lifted off the lamp, and colour of a light_source that fades as the square of the distance. */
-static void write_source(const lc_pov_writer *w, const patch *s)
+static void print_vector(FILE *out, lc_vec3 v) { fprintf(out, "<%.15g, %.15g, %.15g>", v.x, v.y, v.z); }
+
+static void declare_vector(const lc_pov_writer *w, const char *name, lc_vec3 v)
 {
-    lc_vec3 p = lc_add(lc_scale(w->unit, s->p), lc_scale(LC_POV_LIFT, s->n));
+    fprintf(w->out, "#declare %s = ", name);
+    print_vector(w->out, v);
+    fprintf(w->out, ";\n");
+}
+
+/* The light of an area in the middle of which, or for which, a point stands. */
+static void declare_color(const lc_pov_writer *w, const lc_shape_desc *shape, double area)
+{
+    double scale = area * w->unit * w->unit / (2 * LC_PI * LC_POV_FADE * LC_POV_FADE);
+    const lc_rgb *l = &shape->radiance.color[0];
+    fprintf(w->out, "#declare C = rgb <%.15g, %.15g, %.15g>;\n", scale * l->r, scale * l->g, scale * l->b);
+}
+
+/* Nodes in [-1, 1] or [0, 1], and weights that add up to 1. */
+static lc_status declare_gauss(const lc_pov_writer *w, const char *nodes, const char *weights, int n, double lower)
+{
+    gsl_integration_glfixed_table *table = gsl_integration_glfixed_table_alloc((size_t)n);
+    double x, weight;
+    if (!table)
+        return LC_FAULT;
+    for (int pass = 0; pass < 2; ++pass) {
+        fprintf(w->out, "#declare %s = array[%d] {", pass ? weights : nodes, n);
+        for (int i = 0; i < n; ++i) {
+            gsl_integration_glfixed_point(lower, 1, (size_t)i, &x, &weight, table);
+            fprintf(w->out, "%s%.15g", i ? ", " : " ", pass ? weight / (1 - lower) : x);
+        }
+        fprintf(w->out, " };\n");
+    }
+    gsl_integration_glfixed_table_free(table);
+    return LC_OK;
+}
+
+static void write_macro(const lc_pov_writer *w)
+{
     fprintf(w->out,
-            "light_source {\n    <%.15g, %.15g, %.15g> rgb <%.15g, %.15g, %.15g>\n"
-            "    fade_distance %g fade_power 2\n",
-            p.x, p.y, p.z, s->color.r, s->color.g, s->color.b, LC_POV_FADE);
+            "// A piece of a lamp at P with normal N. It stands a little above the lamp, which would shadow it.\n"
+            "#macro Piece(P, N, C)\n"
+            "    light_source {\n"
+            "        P + %g * N color C\n"
+            "        fade_distance %g fade_power 2\n"
+            "        spotlight point_at P + N radius 90 falloff 90 tightness 1\n"
+            "    }\n"
+            "#end\n\n",
+            LC_POV_LIFT, LC_POV_FADE);
 }
 
-/* Emits as the cosine to s->n. */
-static void write_cosine(const lc_pov_writer *w, const patch *s)
+/* One rectangle o + [-1, 1] u + [-1, 1] v; `out` lies on the side of the normal of the shape that is not flipped. */
+static lc_status write_face(const lc_pov_writer *w, const lc_shape_desc *shape, lc_vec3 o, lc_vec3 u, lc_vec3 v,
+                            lc_vec3 out)
 {
-    lc_vec3 to = lc_add(lc_scale(w->unit, s->p), s->n);
-    fprintf(w->out, "    spotlight point_at <%.15g, %.15g, %.15g> radius 90 falloff 90 tightness 1\n", to.x, to.y,
-            to.z);
-}
-
-static void write_patch(const lc_pov_writer *w, const patch *s)
-{
-    write_source(w, s);
-    write_cosine(w, s);
-    fprintf(w->out, "}\n");
-}
-
-/* One rectangle o + [-1, 1] u + [-1, 1] v. */
-static void write_face(const lc_pov_writer *w, const lc_shape_desc *shape, lc_vec3 o, lc_vec3 u, lc_vec3 v, lc_vec3 out)
-{
-    lc_vec3 cross = lc_cross(u, v);
-    double area = 4 * lc_length(cross);
-    lc_vec3 n = lc_normalize(cross);
+    lc_vec3 cross = lc_cross(u, v), n = lc_normalize(cross);
     if ((lc_dot(n, out) < 0) != (shape->flip_normals != 0))
         n = lc_neg(n);
-    patch s = {o, n, lamp_color(w, shape, area)};
-    int nu = pieces(w, 2 * lc_length(u), 4), nv = pieces(w, 2 * lc_length(v), 4);
-    lc_vec3 eu = lc_scale(2 * w->unit * (nu - 1) / nu, u), ev = lc_scale(2 * w->unit * (nv - 1) / nv, v);
-    write_source(w, &s);
-    write_cosine(w, &s);
+    int nu = points_along(w, 2 * lc_length(u)), nv = points_along(w, 2 * lc_length(v));
+    declare_vector(w, "O", lc_scale(w->unit, o));
+    declare_vector(w, "U", lc_scale(w->unit, u));
+    declare_vector(w, "V", lc_scale(w->unit, v));
+    declare_vector(w, "N", n);
+    declare_color(w, shape, 4 * lc_length(cross));
+    if (declare_gauss(w, "X", "XW", nu, -1) != LC_OK || declare_gauss(w, "Y", "YW", nv, -1) != LC_OK)
+        return LC_FAULT;
     fprintf(w->out,
-            "    area_light <%.15g, %.15g, %.15g>, <%.15g, %.15g, %.15g>, %d, %d\n    area_illumination on\n}\n", eu.x,
-            eu.y, eu.z, ev.x, ev.y, ev.z, nu, nv);
+            "#for (I, 0, %d)\n    #for (J, 0, %d)\n"
+            "        Piece(O + X[I] * U + Y[J] * V, N, C * XW[I] * YW[J])\n"
+            "    #end\n#end\n\n",
+            nu - 1, nv - 1);
+    return LC_OK;
 }
 
-/* A normal goes by the inverse transpose; this one lies on the right side at least, which is all that is asked. */
-static void write_rectangle(const lc_pov_writer *w, const lc_shape_desc *shape)
+/* The third column lies on the side of the normal: a normal goes by the inverse transpose. */
+static lc_status write_rectangle(const lc_pov_writer *w, const lc_shape_desc *shape)
 {
-    write_face(w, shape, column(shape, 3), column(shape, 0), column(shape, 1), column(shape, 2));
+    return write_face(w, shape, column(shape, 3), column(shape, 0), column(shape, 1), column(shape, 2));
 }
 
-static void write_cube(const lc_pov_writer *w, const lc_shape_desc *shape)
+static lc_status write_cube(const lc_pov_writer *w, const lc_shape_desc *shape)
 {
-    for (int i = 0; i < 6; ++i) {
+    lc_status status = LC_OK;
+    for (int i = 0; i < 6 && status == LC_OK; ++i) {
         lc_vec3 out = lc_scale(i % 2 ? -1 : 1, column(shape, i / 2));
-        write_face(w, shape, lc_add(column(shape, 3), out), column(shape, (i / 2 + 1) % 3),
-                   column(shape, (i / 2 + 2) % 3), out);
+        status = write_face(w, shape, lc_add(column(shape, 3), out), column(shape, (i / 2 + 1) % 3),
+                            column(shape, (i / 2 + 2) % 3), out);
     }
+    return status;
 }
 
-/* n rings of equal width; ring i is cut into 4 (2 i + 1) pieces, all of the same area, and its points lie where half of it is within. */
-static void write_disk(const lc_pov_writer *w, const lc_shape_desc *shape)
+static lc_status write_disk(const lc_pov_writer *w, const lc_shape_desc *shape)
 {
     lc_vec3 u = column(shape, 0), v = column(shape, 1), cross = lc_cross(u, v), n = lc_normalize(cross);
-    int rings = (pieces(w, 2 * fmax(lc_length(u), lc_length(v)), 4) + 1) / 2;
     if ((lc_dot(n, column(shape, 2)) < 0) != (shape->flip_normals != 0))
         n = lc_neg(n);
-    patch s = {{0, 0, 0}, n, lamp_color(w, shape, LC_PI * lc_length(cross) / (4.0 * rings * rings))};
-    for (int i = 0; i < rings; ++i)
-        for (int j = 0; j < 4 * (2 * i + 1); ++j) {
-            double r = sqrt(i * i + i + 0.5) / rings, phi = 2 * LC_PI * (j + 0.5) / (4 * (2 * i + 1));
-            s.p = lc_add(column(shape, 3), lc_add(lc_scale(r * cos(phi), u), lc_scale(r * sin(phi), v)));
-            write_patch(w, &s);
-        }
+    int around = 2 * points_along(w, 2 * fmax(lc_length(u), lc_length(v))), rings = (around + 3) / 4;
+    declare_vector(w, "O", lc_scale(w->unit, column(shape, 3)));
+    declare_vector(w, "U", lc_scale(w->unit, u));
+    declare_vector(w, "V", lc_scale(w->unit, v));
+    declare_vector(w, "N", n);
+    declare_color(w, shape, LC_PI * lc_length(cross) / around);
+    if (declare_gauss(w, "R", "RW", rings, 0) != LC_OK) /* of the squared radius */
+        return LC_FAULT;
+    fprintf(w->out,
+            "#for (I, 0, %d)\n    #for (J, 0, %d)\n"
+            "        #declare Phi = 2 * pi * (J + I / 2) / %d;\n"
+            "        Piece(O + sqrt(R[I]) * (cos(Phi) * U + sin(Phi) * V), N, C * RW[I])\n"
+            "    #end\n#end\n\n",
+            rings - 1, around - 1, around);
+    return LC_OK;
 }
 
 /* A spiral of equal steps in height and the golden angle in longitude. */
-static void write_sphere(const lc_pov_writer *w, const lc_shape_desc *shape)
+static lc_status write_sphere(const lc_pov_writer *w, const lc_shape_desc *shape)
 {
-    double radius = cbrt(fabs(lc_affine_determinant(&shape->to_world))), golden = LC_PI * (3 - sqrt(5.0));
-    int across = pieces(w, 2 * radius, 4), count = (int)ceil(LC_PI * across * across);
-    patch s = {{0, 0, 0}, {0, 0, 0}, lamp_color(w, shape, 4 * LC_PI * radius * radius / count)};
-    for (int i = 0; i < count; ++i) {
-        double z = 1 - (2 * i + 1.0) / count, r = sqrt(1 - z * z), phi = golden * i;
-        lc_vec3 n = lc_vec(r * cos(phi), r * sin(phi), z);
-        s.p = lc_add(column(shape, 3), lc_scale(radius, n));
-        s.n = shape->flip_normals ? lc_neg(n) : n;
-        write_patch(w, &s);
-    }
+    double radius = cbrt(fabs(lc_affine_determinant(&shape->to_world)));
+    int across = points_along(w, 2 * radius), count = 3 * across * across;
+    declare_vector(w, "O", lc_scale(w->unit, column(shape, 3)));
+    declare_color(w, shape, 4 * LC_PI * radius * radius / count);
+    fprintf(w->out,
+            "#for (I, 0, %d)\n"
+            "    #declare Z = 1 - (2 * I + 1) / %d;\n"
+            "    #declare Phi = pi * (3 - sqrt(5)) * I;\n"
+            "    #declare N = <sqrt(1 - Z * Z) * cos(Phi), sqrt(1 - Z * Z) * sin(Phi), Z>;\n"
+            "    Piece(O + %.15g * N, %sN, C)\n"
+            "#end\n\n",
+            count - 1, count, w->unit * radius, shape->flip_normals ? "-" : "");
+    return LC_OK;
 }
 
-static void write_lamp(const lc_pov_writer *w, const lc_shape_desc *shape)
+static lc_status write_lamp(const lc_pov_writer *w, const lc_shape_desc *shape)
 {
-    static void (*const writers[])(const lc_pov_writer *, const lc_shape_desc *) = {
+    static lc_status (*const writers[])(const lc_pov_writer *, const lc_shape_desc *) = {
         write_rectangle, write_disk, write_cube, write_sphere}; /* in the order of lc_shape_kind */
     fprintf(w->out, "// the light of the %s of line %d\n", lc_pov_kind_names[shape->kind], shape->line);
-    writers[shape->kind](w, shape);
-    fprintf(w->out, "\n");
+    return writers[shape->kind](w, shape);
 }
 
 static void write_point(const lc_pov_writer *w, const lc_point_desc *point)
 {
-    double fade = LC_POV_FADE / w->unit;
-    patch s = {point->position, {0, 0, 0}, lc_rgb_scale(1 / (2 * LC_PI * fade * fade), point->intensity)};
-    fprintf(w->out, "// point light of line %d\n", point->line);
-    write_source(w, &s);
-    fprintf(w->out, "}\n\n");
+    double scale = w->unit * w->unit / (2 * LC_PI * LC_POV_FADE * LC_POV_FADE);
+    fprintf(w->out, "// point light of line %d\nlight_source {\n    ", point->line);
+    print_vector(w->out, lc_scale(w->unit, point->position));
+    fprintf(w->out, " rgb <%.15g, %.15g, %.15g>\n    fade_distance %g fade_power 2\n}\n\n", scale * point->intensity.r,
+            scale * point->intensity.g, scale * point->intensity.b, LC_POV_FADE);
 }
 
 static void write_directional(const lc_pov_writer *w, const lc_directional_desc *light)
@@ -182,13 +216,20 @@ lc_status lc_pov_check_lights(const lc_pov_writer *w, lc_error *err)
     return LC_OK;
 }
 
-void lc_pov_write_lights(const lc_pov_writer *w)
+lc_status lc_pov_write_lights(const lc_pov_writer *w, lc_error *err)
 {
-    for (int i = 0; i < w->desc->shape_count; ++i)
-        if (is_lamp(&w->desc->shapes[i]))
-            write_lamp(w, &w->desc->shapes[i]);
+    int lamps = 0;
+    for (int i = 0; i < w->desc->shape_count; ++i) {
+        if (!is_lamp(&w->desc->shapes[i]))
+            continue;
+        if (!lamps++)
+            write_macro(w);
+        if (write_lamp(w, &w->desc->shapes[i]) != LC_OK)
+            return lc_fail(err, LC_FAULT, "out of memory for a quadrature");
+    }
     for (int i = 0; i < w->desc->point_count; ++i)
         write_point(w, &w->desc->points[i]);
     for (int i = 0; i < w->desc->directional_count; ++i)
         write_directional(w, &w->desc->directionals[i]);
+    return LC_OK;
 }
