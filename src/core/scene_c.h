@@ -64,6 +64,14 @@ int lc_accel_intersect(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, 
 int lc_accel_occluded(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, int from_part, lc_vec3 q, int to_part,
                       lc_vec3 to_n, int to_infinity, double time);
 
+/* camera.c: the image plane at distance 1, so that a ray is two multiplications away. */
+typedef struct lc_camera_frame {
+    lc_vec3 eye, corner, right, down; /* the upper left corner, and one pixel's steps, as seen from the eye */
+    double near_clip;
+} lc_camera_frame;
+void lc_camera_prepare(lc_camera_frame *frame, const lc_camera_desc *camera, int width, int height);
+lc_ray lc_camera_frame_ray(const lc_camera_frame *frame, double x, double y);
+
 /* warp.c */
 void lc_tangents(lc_vec3 n, lc_vec3 *s, lc_vec3 *t);
 lc_vec3 lc_uniform_sphere(double u, double v);
