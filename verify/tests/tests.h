@@ -29,5 +29,6 @@ Suite *lc_suite_camera(void);
 Suite *lc_suite_accel(void);
 Suite *lc_suite_surface(void);
 Suite *lc_suite_render(void);
+Suite *lc_suite_cli(void);
 
 #endif
