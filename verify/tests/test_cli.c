@@ -592,6 +592,10 @@ Suite *lc_suite_cli(void)
     tcase_add_test(tc, sample_repeats_what_render_saw);
     tcase_add_test(tc, verify_says_pass_or_fail);
     tcase_add_test(tc, verify_has_formats);
+    suite_add_tcase(suite, tc);
+    tc = tcase_create("signals");
+    tcase_set_timeout(tc, 120);
+    tcase_add_checked_fixture(tc, make_folder, clean_folder);
     tcase_add_test(tc, a_signal_leaves_nothing_half_written);
     suite_add_tcase(suite, tc);
     return suite;
