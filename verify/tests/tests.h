@@ -30,5 +30,7 @@ Suite *lc_suite_accel(void);
 Suite *lc_suite_surface(void);
 Suite *lc_suite_render(void);
 Suite *lc_suite_cli(void);
+Suite *lc_suite_report(void);
+Suite *lc_suite_estimators(void);
 
 #endif
