@@ -14,7 +14,7 @@ static lc_status read_image(lc_film **out, const char *path, lc_error *err)
     const lc_film *film = *out;
     uint64_t known = 0;
     for (size_t i = 0; i < (size_t)film->width * (size_t)film->height; ++i)
-        known += film->pixels[i].n > 1;
+        known += film->pixels[i].n > 0;
     if (known == 0) {
         lc_film_free(*out);
         *out = NULL;

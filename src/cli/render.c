@@ -8,7 +8,7 @@
 
 typedef struct render_arguments {
     const char *estimator, *size, *shard, *out;
-    int samples, bounces, by_bounce, threads;
+    int samples, bounces, min_bounces, by_bounce, threads;
     uint64_t seed;
     double exposure;
     lc_strings definitions;
@@ -90,6 +90,7 @@ static lc_status render(const render_arguments *a, const char *scene_name, lc_er
     options.arm = lc_arm(estimator->name);
     options.count = (uint64_t)(a->samples > 0 ? a->samples : desc->samples);
     status = lc_cli_bounces(&options.max_bounces, a->bounces, scene, estimator, err);
+    options.min_bounces = a->min_bounces;
     if (status == LC_OK && a->size)
         status = lc_cli_read_pair(&width, &height, a->size, 'x', "--size", err);
     if (status == LC_OK && (width < 1 || height < 1 || width > LC_MAX_SIZE || height > LC_MAX_SIZE))
@@ -120,6 +121,8 @@ static int run(const lc_command *self, int argc, char **argv)
          NULL},
         {'s', "samples", LC_OPT_INT, &a.samples, "SPP", "samples a pixel; default: the scene's", 1, 2e9, NULL},
         {0, "bounces", LC_OPT_INT, &a.bounces, "N", "scattering events at most; default: the scene's, else 5", 0,
+         LC_UNBOUNDED, NULL},
+        {0, "min-bounces", LC_OPT_INT, &a.min_bounces, "N", "leaves out the terms below; 1: reflected light only", 0,
          LC_UNBOUNDED, NULL},
         {0, "by-bounce", LC_OPT_FLAG, &a.by_bounce, NULL,
          "one image for each number of bounces: OUT.0.exr, OUT.1.exr, ...", 0, 0, NULL},
