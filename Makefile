@@ -57,8 +57,10 @@ DIRS := src/core src/io estimators verify/stats verify/analytic verify/renderers
 LIB  := $(patsubst %.c,$(BUILD)/obj/%.o,$(filter-out estimators/template.c,$(wildcard $(DIRS:%=%/*.c))))
 CLI  := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard src/cli/*.c))
 TEST := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard verify/tests/*.c))
+# The proofs of the judge: programs of their own, two of whose files have a main.
+PROOF := $(patsubst %.c,$(BUILD)/obj/%.o,$(filter-out %/calibrate.c %/power.c,$(wildcard verify/proof/*.c)))
 
-.PHONY: all check verify lint asan-check needs fresh clean help
+.PHONY: all check verify lint asan-check calibrate power judge-mutants needs fresh clean help
 all: $(BUILD)/lightcheck $(BUILD)/obj/estimators/template.o ## build the program
 
 $(BUILD)/lightcheck: $(CLI) $(LIB)
@@ -66,6 +68,9 @@ $(BUILD)/lightcheck: $(CLI) $(LIB)
 
 $(BUILD)/tests: $(TEST) $(LIB)
 	$(CC) $(LDFLAGS) -o $@ $^ $(CHECK_LIBS) $(ALL_LIBS)
+
+$(BUILD)/calibrate $(BUILD)/power: $(BUILD)/%: $(BUILD)/obj/verify/proof/%.o $(PROOF) $(LIB)
+	$(CC) $(LDFLAGS) -o $@ $^ $(ALL_LIBS)
 
 $(BUILD)/obj/verify/tests/%.o: ALL_CFLAGS += $(CHECK_CFLAGS)
 $(BUILD)/obj/%.o: %.c $(BUILD)/flags
@@ -91,6 +96,15 @@ lint: ## dependencies between folders run one way, and other rules that a compil
 	@sh verify/tests/lint.sh
 	@sh verify/tests/lint_selftest.sh
 
+calibrate: $(BUILD)/calibrate ## how often the judge decides wrongly: results/calibration.md
+	$(BUILD)/calibrate results/calibration.md
+
+power: $(BUILD)/power ## samples that the judge needs, beside other programs' rules: results/power.md
+	$(BUILD)/power results/power.md
+
+judge-mutants: ## wrong judges, each of which the tests must catch
+	@sh verify/tests/judge_mutants.sh
+
 needs: ## say what is missing, if anything is
 	@:
 
@@ -103,4 +117,4 @@ clean: ## remove what was built
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' $(firstword $(MAKEFILE_LIST)) | expand -t 22
 
--include $(LIB:.o=.d) $(CLI:.o=.d) $(TEST:.o=.d)
+-include $(LIB:.o=.d) $(CLI:.o=.d) $(TEST:.o=.d) $(wildcard $(BUILD)/obj/verify/proof/*.d)

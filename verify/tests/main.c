@@ -17,6 +17,7 @@ static Suite *(*const suites[])(void) = {
     lc_suite_sampler,    lc_suite_warp,           lc_suite_camera,        lc_suite_accel,
     lc_suite_surface,    lc_suite_render,         lc_suite_cli,           lc_suite_report,
     lc_suite_estimators,
+    lc_suite_judge_mutants,
 };
 
 int main(void)

@@ -1,0 +1,321 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ *
+ * power: samples a pixel that the judge and other programs' rules need to see a bias, on the same synthetic films and at
+ * the same rate of false failures. Writes results/power.md; exit status 4 when it cannot.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "verify/proof/rules.h"
+
+/* Samples are 2^(e / 8). A coarse search in steps of sqrt(2), then single steps of 9%; each number of samples is tried
+ * with the same streams, so that rules and neighbours see the same luck. */
+enum { RULES = 16, LEAST = 4 * 8, MOST = 25 * 8, COARSE = 4, NULLS = 2000, MOST_TRIALS = 400 };
+
+static const double ALPHA = 1e-6;
+
+typedef enum bias_kind { BIAS_NONE, BIAS_IMAGE, BIAS_TILE, BIAS_PIXEL } bias_kind;
+
+static const struct {
+    const char *name;
+    double size;
+} biases[] = {{"none", 0}, {"1% everywhere", 0.01}, {"5% in one 8x8 tile", 0.05}, {"50% in one pixel", 0.5}};
+
+typedef struct experiment {
+    lc_law law;
+    int arms, trials;
+    bias_kind bias;
+    uint64_t seed, number;
+    int rules;
+    double samples; /* of the evaluation in progress */
+    lc_limits limits;
+    uint32_t failed[NULLS];     /* a bit a rule */
+    int power[MOST + 1][RULES]; /* trials in which a rule failed the image */
+    unsigned char known[MOST + 1];
+} experiment;
+
+static int is_biased(bias_kind bias, int x, int y)
+{
+    switch (bias) {
+    case BIAS_IMAGE:
+        return 1;
+    case BIAS_TILE:
+        return x / 8 == 3 && y / 8 == 5;
+    case BIAS_PIXEL:
+        return x == 37 && y == 22;
+    default:
+        return 0;
+    }
+}
+
+static void power_trial(void *user, int trial)
+{
+    experiment *e = user;
+    lc_estimate field[LC_RULE_PIXELS];
+    lc_stream stream;
+    lc_stream_start(&stream, e->seed, e->number, (uint64_t)trial);
+    double sign = trial % 2 ? 1 : -1, size = biases[e->bias].size;
+    for (int y = 0; y < LC_RULE_SIDE; ++y)
+        for (int x = 0; x < LC_RULE_SIDE; ++x) {
+            lc_pixel a, b;
+            lc_law_draw(&a, &e->law, (uint64_t)e->samples, 1, is_biased(e->bias, x, y) ? sign * size : 0, &stream);
+            if (e->arms == 2) {
+                lc_law_draw(&b, &e->law, (uint64_t)e->samples, 1, 0, &stream);
+                field[y * LC_RULE_SIDE + x] = lc_estimate_two(&a, 1, &b, 1, 0, 0);
+            } else {
+                field[y * LC_RULE_SIDE + x] = lc_estimate_one(&a, 1, 0, e->law.mean, 0);
+            }
+        }
+    lc_evidence evidence = {field, e->arms, e->samples, e->law.deviation, &e->limits};
+    e->failed[trial] = 0;
+    for (int r = 0; r < e->rules; ++r)
+        if ((e->arms == 1 || lc_rules[r].two_films) && lc_rules[r].fails(&evidence))
+            e->failed[trial] |= (uint32_t)1 << r;
+}
+
+static void count_failed(int *count, experiment *e, int trials)
+{
+    lc_trials_run(power_trial, e, trials);
+    for (int r = 0; r < e->rules; ++r) {
+        count[r] = 0;
+        for (int i = 0; i < trials; ++i)
+            count[r] += (int)(e->failed[i] >> r & 1);
+    }
+}
+
+static double samples_at(int exponent) { return floor(pow(2, exponent / 8.0) + 0.5); }
+
+static int reaches(experiment *e, int exponent, int rule, double power)
+{
+    if (!e->known[exponent]) {
+        e->samples = samples_at(exponent);
+        lc_limits_init(&e->limits, ALPHA, &e->law, e->samples);
+        count_failed(e->power[exponent], e, e->trials);
+        e->known[exponent] = 1;
+    }
+    return e->power[exponent][rule] >= ceil(power * e->trials);
+}
+
+/* The fewest samples with which the rule has this power; INFINITY when it never has. */
+static double needed(experiment *e, int rule, double power)
+{
+    int low = LEAST - COARSE, high = MOST;
+    if (!reaches(e, MOST, rule, power))
+        return INFINITY;
+    while (high - low > COARSE) {
+        int middle = low + (high - low) / (2 * COARSE) * COARSE;
+        if (reaches(e, middle, rule, power))
+            high = middle;
+        else
+            low = middle;
+    }
+    while (high - low > 1 && high > LEAST) {
+        int middle = (high + low) / 2;
+        if (reaches(e, middle, rule, power))
+            high = middle;
+        else
+            low = middle;
+    }
+    return samples_at(high);
+}
+
+typedef struct result {
+    double n90[RULES], n99[RULES];
+} result;
+
+static void print_samples(FILE *table, double n)
+{
+    if (isinf(n))
+        fprintf(table, " never |");
+    else
+        fprintf(table, " %.0f |", n);
+}
+
+static void report_experiment(FILE *table, result *out, experiment *e)
+{
+    memset(e->known, 0, sizeof e->known);
+    int ours = e->rules - 1;
+    for (int r = 0; r < e->rules; ++r) {
+        int applies = e->arms == 1 || lc_rules[r].two_films;
+        out->n90[r] = applies ? needed(e, r, 0.90) : NAN;
+        out->n99[r] = applies ? needed(e, r, 0.99) : NAN;
+    }
+    fprintf(table,
+            "\n### %s; %s, skewness %.1f; %s\n\n%d trials.\n\n| rule | 90%% | 99%% | 99%%, of ours |\n"
+            "|---|---|---|---|\n",
+            biases[e->bias].name, e->law.name, e->law.skewness,
+            e->arms == 2 ? "two films" : "one film and exact values", e->trials);
+    for (int r = 0; r < e->rules; ++r) {
+        if (isnan(out->n99[r]))
+            continue;
+        fprintf(table, "| %s |", lc_rules[r].name);
+        print_samples(table, out->n90[r]);
+        print_samples(table, out->n99[r]);
+        if (isinf(out->n99[r]))
+            fprintf(table, " |\n");
+        else
+            fprintf(table, " %.3g |\n", out->n99[r] / out->n99[ours]);
+    }
+    fflush(table);
+}
+
+/* The rules' own error rates, where they can be counted. */
+static void report_nulls(FILE *table, experiment *e)
+{
+    int count[RULES];
+    e->bias = BIAS_NONE;
+    e->samples = 4096;
+    lc_limits_init(&e->limits, 0.01, &e->law, e->samples);
+    count_failed(count, e, NULLS);
+    fprintf(table, "| %s, %s |", e->law.name, e->arms == 2 ? "two films" : "one film");
+    for (int r = 0; r < e->rules; ++r) {
+        if (e->arms == 2 && !lc_rules[r].two_films)
+            fprintf(table, " |");
+        else
+            fprintf(table, " %.4f |", (double)count[r] / NULLS);
+    }
+    fprintf(table, "\n");
+}
+
+static int find_rule(const char *name)
+{
+    int r = 0;
+    while (strcmp(lc_rules[r].name, name) != 0)
+        ++r;
+    return r;
+}
+
+static void report_target(FILE *table, const char *what, double wanted, double is)
+{
+    fprintf(table, "| %s | >= %.0fx | %.3gx | %s |\n", what, wanted, is, is >= wanted ? "met" : "**missed**");
+}
+
+enum { SETUPS = 5 }; /* law and arms, each against the three biases */
+
+typedef struct setup {
+    lc_law law;
+    int arms, trials;
+} setup;
+
+/* Our samples over those of the best rule at the equal rate that applies. */
+static double over_best(const result *r, int rules, int *best)
+{
+    *best = 0;
+    for (int i = 1; i < rules - 1; ++i)
+        if (lc_rules[i].equal_rate && r->n99[i] < r->n99[*best]) /* NaN where it does not apply */
+            *best = i;
+    return r->n99[rules - 1] / r->n99[*best];
+}
+
+static void report_best(FILE *table, result results[SETUPS][4], const setup *setups, int rules)
+{
+    fprintf(table,
+            "\n## Beside the best of the others\n\nWhich differs from row to row; at 99%% power, among those at the "
+            "equal rate. Target: never over 1.2x.\n\n| law | films | bias | best of the others | its samples | "
+            "ours | ours over it | <= 1.2x |\n|---|---|---|---|---|---|---|---|\n");
+    for (int s = 0; s < SETUPS; ++s)
+        for (int b = BIAS_IMAGE; b <= BIAS_PIXEL; ++b) {
+            int best;
+            const result *r = &results[s][b];
+            double ratio = over_best(r, rules, &best);
+            fprintf(table, "| %s | %d | %s | %s | %.0f | %.0f | %.3g | %s |\n", setups[s].law.name, setups[s].arms,
+                    biases[b].name, lc_rules[best].name, r->n99[best], r->n99[rules - 1], ratio,
+                    ratio <= 1.2 ? "met" : "**missed**");
+        }
+    fprintf(
+        table,
+        "\nWhere it is missed, it is by two decisions of the judge. No level is tested below %d samples a pixel, so "
+        "that "
+        "Student's t\nholds with any mixture of variances: that is a floor, not a factor. And a skewed pixel is tested "
+        "alone only from\n(g z^3 / 2.08)^2 samples on, because without this guard its rate would not be the one "
+        "claimed "
+        "(see the rates above, and the\ncolumn `unguarded` in calibration.md); until then a bias of one pixel shows in "
+        "coarser tiles. Mitsuba's z needs no such\nguard only because it is given the exact variance and the exact "
+        "law.\n",
+        (int)LC_LEAST_SAMPLES);
+}
+
+static void report_targets(FILE *table, result results[SETUPS][4], int rules)
+{
+    static const char *const mitsuba[] = {"Mitsuba 3, published", "Mitsuba 3, strict", "Mitsuba 3, quorum"};
+    int ours = rules - 1;
+    const result *one = &results[0][BIAS_IMAGE], *two = &results[1][BIAS_IMAGE];
+    fprintf(table, "\n## Targets\n\nAt 99%% power; a bias of 1%% everywhere, Gaussian, c = 2.\n\n| target | | is | |\n"
+                   "|---|---|---|---|\n");
+    for (int i = 0; i < 3; ++i) {
+        char what[80];
+        snprintf(what, sizeof what, "fewer samples than %s", mitsuba[i]);
+        report_target(table, what, 100, one->n99[find_rule(mitsuba[i])] / one->n99[ours]);
+    }
+    report_target(table, "fewer than KS of pixels, two films", 10,
+                  two->n99[find_rule("Jung et al., KS of pixels")] / two->n99[ours]);
+}
+
+static int report(FILE *table, uint64_t seed)
+{
+    const setup setups[SETUPS] = {{lc_law_gaussian(1, 2), 1, MOST_TRIALS},
+                                  {lc_law_gaussian(1, 2), 2, MOST_TRIALS},
+                                  {lc_law_gaussian(1, 0.5), 1, MOST_TRIALS},
+                                  {lc_law_coin(0.2, 5), 1, MOST_TRIALS},
+                                  {lc_law_lognormal(1.27), 1, 200}};
+    static result results[SETUPS][4];
+    experiment *e = calloc(1, sizeof *e);
+    if (!e)
+        return -1;
+    while (lc_rules[e->rules].name)
+        ++e->rules;
+    e->seed = seed;
+    fprintf(table,
+            "\nSamples a pixel (and film) after which a rule sees a bias in 90%% and in 99%% of images of 64x64 pixels "
+            "of mean 1, "
+            "on the same\nfilms, each rule at a false-failure rate of %.0e an image unless it says `published`. Sample "
+            "counts "
+            "are powers of 2^(1/8).\n`never`: not with 2^25. The bias is added, in half of the trials subtracted.\n\n"
+            "## The rules\n\nWritten anew from their sources, and brought to an equal rate so:\n\n%s",
+            ALPHA, lc_rule_notes);
+    fprintf(table,
+            "\n## Their rates, checked at 0.01\n\nFalse failures in %d images without bias, 4096 samples, all rules "
+            "set to 0.01 (but for those published).\nA rule far above 0.01 here, on a skewed law, is ahead below only "
+            "by failing right images too.\n\n| law |",
+            (int)NULLS);
+    for (int r = 0; r < e->rules; ++r)
+        fprintf(table, " %s |", lc_rules[r].name);
+    fprintf(table, "\n|---|");
+    for (int r = 0; r < e->rules; ++r)
+        fprintf(table, "---|");
+    fprintf(table, "\n");
+    for (int s = 0; s < SETUPS; ++s) {
+        e->law = setups[s].law;
+        e->arms = setups[s].arms;
+        e->number = (uint64_t)(100 + s);
+        report_nulls(table, e);
+    }
+    fprintf(table, "\n## Samples needed\n");
+    for (int s = 0; s < SETUPS; ++s)
+        for (bias_kind b = BIAS_IMAGE; b <= BIAS_PIXEL; ++b) {
+            e->law = setups[s].law;
+            e->arms = setups[s].arms;
+            e->trials = setups[s].trials;
+            e->bias = b;
+            e->number = (uint64_t)(10 * s + (int)b);
+            report_experiment(table, &results[s][b], e);
+        }
+    report_best(table, results, setups, e->rules);
+    report_targets(table, results, e->rules);
+    free(e);
+    return 0;
+}
+
+int main(int argc, char **argv)
+{
+    uint64_t seed = argc > 2 ? strtoull(argv[2], NULL, 10) : 1;
+    const char *path = argc > 1 ? argv[1] : "results/power.md";
+    FILE *table = lc_table_open(path, "Power of the judge beside other rules", "make power", seed);
+    int broken = !table || report(table, seed) != 0;
+    if (table && lc_table_close(table) != 0)
+        broken = 1;
+    if (broken)
+        fprintf(stderr, "power: cannot write %s\n", path);
+    return broken ? LC_FAULT : LC_OK;
+}

@@ -1,0 +1,254 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Small calibrations of the judge as a whole, each of which a wrong judge fails; judge_mutants.sh plants the wrong ones.
+ * Films come from estimators of a known law, so that everything from the sample to the verdict is the real thing. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "verify/judge/judge_c.h"
+#include "verify/tests/tests.h"
+
+/* ---- estimators of a known mean -------------------------------------------------------------------------------- */
+
+/* Red is 1 with probability P, else 0; green and blue are calm. */
+static lc_rgb coin(double p, lc_sampler *sampler)
+{
+    lc_rgb value = {lc_next(sampler) < p, 0.99 + 0.02 * lc_next(sampler), 0.99 + 0.02 * lc_next(sampler)};
+    return value;
+}
+
+#define COIN(name, p) \
+    static lc_rgb name(const lc_scene *scene, const lc_ray *ray, const lc_hit *hit, const lc_options *options, \
+                       lc_sampler *sampler) \
+    { \
+        (void)scene, (void)ray, (void)hit, (void)options; \
+        return coin(p, sampler); \
+    }
+
+COIN(coin_right, 0.8)
+COIN(coin_high, 0.8 * 1.06) /* off by twice MARGIN */
+COIN(coin_edge, 0.8 * 1.03) /* by just MARGIN */
+
+static const double MARGIN = 0.03;
+
+static lc_rgb poisoned(const lc_scene *scene, const lc_ray *ray, const lc_hit *hit, const lc_options *options,
+                       lc_sampler *sampler)
+{
+    lc_rgb value = coin_right(scene, ray, hit, options, sampler);
+    if (lc_next(sampler) < 1e-3)
+        value.r = -value.r;
+    return value;
+}
+
+static lc_estimator estimator_of(const char *name, lc_radiance_fn *radiance)
+{
+    lc_estimator e = {LC_ABI, name, "", "", LC_DIFFUSE, LC_AREA, 1, radiance};
+    return e;
+}
+
+/* ---- one claim ------------------------------------------------------------------------------------------------- */
+
+static lc_status expect(lc_expected *out, const lc_claim *claim, const lc_scene *scene, int threads, lc_error *err)
+{
+    (void)claim, (void)scene, (void)threads, (void)err;
+    for (int i = 0; i < out->width * out->height; ++i) {
+        out->rgb[3 * i] = 0.8;
+        out->rgb[3 * i + 1] = out->rgb[3 * i + 2] = 1;
+    }
+    return LC_OK;
+}
+
+typedef struct setup {
+    int width, height;
+    double margin, tolerance, false_fail, false_pass;
+} setup;
+
+static lc_scene *build_scene(int width, int height)
+{
+    lc_scene_desc desc;
+    lc_scene *scene = NULL;
+    lc_error err;
+    lc_scene_desc_init(&desc);
+    desc.width = width;
+    desc.height = height;
+    snprintf(desc.name, sizeof desc.name, "void");
+    ck_assert_msg(lc_scene_build(&scene, &desc, &err) == LC_OK, "%s", err.text);
+    lc_scene_desc_release(&desc);
+    return scene;
+}
+
+/* Judges a claim about the estimator, against `other` or against the means of `coin_right`. */
+static lc_row judge_claim(const setup *s, const lc_scene *scene, const lc_estimator *estimator,
+                          const lc_estimator *other, uint64_t seed)
+{
+    static const lc_check check = {"mutants", "", "", NULL};
+    lc_verify_options options;
+    lc_verify_options_init(&options);
+    options.false_fail = s->false_fail;
+    options.false_pass = s->false_pass;
+    options.seed = seed;
+    options.threads = 1;
+    lc_session session;
+    memset(&session, 0, sizeof session);
+    session.options = &options;
+    session.rows = 1;
+    session.margin = s->margin;
+    lc_claim claim;
+    memset(&claim, 0, sizeof claim);
+    claim.check = &check;
+    claim.scene = scene;
+    claim.estimator = estimator;
+    claim.other = other;
+    claim.expect = other ? NULL : expect;
+    claim.min_bounces = claim.max_bounces = 1;
+    claim.tolerance = s->tolerance;
+    claim.source = "";
+    lc_row row;
+    lc_error err = {""};
+    memset(&row, 0, sizeof row);
+    ck_assert_msg(lc_judge_claim(&row, &session, &claim, &err) == LC_OK, "%s", err.text);
+    lc_session_clear(&session);
+    return row;
+}
+
+/* How many of `count` claims end with the verdict. */
+static int count_verdicts(const setup *s, lc_row_verdict verdict, const lc_estimator *estimator,
+                          const lc_estimator *other, int count)
+{
+    lc_scene *scene = build_scene(s->width, s->height);
+    int seen = 0;
+    for (int i = 0; i < count; ++i)
+        seen += judge_claim(s, scene, estimator, other, (uint64_t)i + 1).verdict == verdict;
+    lc_scene_free(scene);
+    return seen;
+}
+
+/* The rate at which something that should hardly happen happens, against its level. */
+static void check_rate(int seen, int count, double level)
+{
+    lc_interval rate = lc_clopper_pearson(seen, count, 1e-3);
+    ck_assert_msg(rate.lower <= level, "%d of %d, at a level of %g", seen, count, level);
+}
+
+/* ---- right and wrong estimators -------------------------------------------------------------------------------- */
+
+START_TEST(right_passes_and_wrong_fails)
+{
+    const setup s = {4, 4, MARGIN, 0, 1e-6, 1e-6};
+    lc_estimator right = estimator_of("right", coin_right), high = estimator_of("high", coin_high);
+    lc_estimator again = estimator_of("again", coin_right);
+    ck_assert_int_eq(count_verdicts(&s, LC_ROW_PASS, &right, NULL, 3), 3);
+    ck_assert_int_eq(count_verdicts(&s, LC_ROW_FAIL, &high, NULL, 3), 3);
+    ck_assert_int_eq(count_verdicts(&s, LC_ROW_PASS, &right, &again, 3), 3);
+    ck_assert_int_eq(count_verdicts(&s, LC_ROW_FAIL, &high, &again, 3), 3);
+    ck_assert_int_eq(count_verdicts(&s, LC_ROW_FAIL, &right, &high, 3), 3); /* also where the hub is wrong */
+}
+END_TEST
+
+/* Whatever the mean, one negative sample is one too many, and says where. */
+START_TEST(bad_samples_fail)
+{
+    const setup s = {4, 4, MARGIN, 0, 1e-6, 1e-6};
+    lc_estimator right = estimator_of("right", coin_right), bad = estimator_of("bad", poisoned);
+    lc_scene *scene = build_scene(4, 4);
+    for (int two = 0; two < 3; ++two) {
+        lc_row row = judge_claim(&s, scene, two == 2 ? &right : &bad, two == 0 ? NULL : two == 1 ? &right : &bad, 1);
+        ck_assert_int_eq(row.verdict, LC_ROW_FAIL);
+        ck_assert_msg(strstr(row.reason, "negative") != NULL, "%s", row.reason);
+    }
+    lc_scene_free(scene);
+}
+END_TEST
+
+/* Too near to the margin to be shown within it, and declared too inaccurate to be shown wrong. */
+START_TEST(undecided_is_not_a_pass)
+{
+    const setup s = {4, 4, MARGIN, 2 * MARGIN, 1e-6, 1e-6};
+    lc_estimator edge = estimator_of("edge", coin_edge);
+    ck_assert_int_eq(count_verdicts(&s, LC_ROW_UNDECIDED, &edge, NULL, 3), 3);
+}
+END_TEST
+
+/* A row of one pixel plans for more looks than are paid for; it still gets the samples that it needs. */
+START_TEST(the_last_look_is_taken)
+{
+    const setup s = {1, 1, 0.005, 0, 1e-6, 1e-6};
+    lc_estimator right = estimator_of("right", coin_right);
+    ck_assert_int_eq(count_verdicts(&s, LC_ROW_PASS, &right, NULL, 2), 2);
+}
+END_TEST
+
+/* ---- error rates ------------------------------------------------------------------------------------------------ */
+
+/* All looks and channels together keep within a budget that a single one would fill; and make use of it. */
+START_TEST(every_look_is_paid_for)
+{
+    const setup s = {1, 1, MARGIN, 0, 0.75, 1e-9};
+    const int count = 250;
+    lc_estimator right = estimator_of("right", coin_right);
+    int failed = count_verdicts(&s, LC_ROW_FAIL, &right, NULL, count);
+    check_rate(failed, count, 0.75);
+    ck_assert_msg(failed > count / 4, "%d of %d: the budget is wasted", failed, count);
+}
+END_TEST
+
+/* The true difference is the margin; FAIL is out of reach. */
+START_TEST(every_pass_is_paid_for)
+{
+    const setup s = {1, 1, MARGIN, 2 * MARGIN, 1e-6, 0.4};
+    const int count = 120;
+    lc_estimator edge = estimator_of("edge", coin_edge);
+    int passed = count_verdicts(&s, LC_ROW_PASS, &edge, NULL, count);
+    check_rate(passed, count, 0.4);
+    ck_assert_msg(passed > count / 10, "%d of %d: the budget is wasted", passed, count);
+}
+END_TEST
+
+/* Two equally noisy films, the first brighter by a margin that is measured in the second: the noise of the margin
+ * counts as well. */
+START_TEST(a_measured_margin_has_noise)
+{
+    const double margin = 0.5, level = 0.05, n = 4096;
+    const int count = 1500;
+    int passed = 0;
+    for (int i = 0; i < count; ++i) {
+        lc_estimate e;
+        lc_pyramid_plan plan;
+        lc_pyramid out;
+        lc_sampler sampler;
+        lc_sampler_start(&sampler, 1, 0, 0, (uint32_t)i);
+        lc_pixel p[2];
+        memset(p, 0, sizeof p);
+        for (int arm = 0; arm < 2; ++arm) {
+            double u = lc_next(&sampler), v = lc_next(&sampler); /* Box and Muller */
+            p[arm].n = (uint64_t)n;
+            p[arm].c[0].mean = (arm ? 1 : 1 + margin) + 2 * sqrt(-2 * log(1 - u) / n) * cos(2 * LC_PI * v);
+            p[arm].c[0].m2 = 4 * (n - 1);
+        }
+        e = lc_estimate_two(&p[0], 1, &p[1], 1, 0, 2 * margin);
+        lc_pyramid_plan_init(&plan, 1e-6, level);
+        plan.margin[0] = margin * p[1].c[0].mean;
+        plan.relative = margin;
+        ck_assert(lc_pyramid_judge(&out, &e, 1, 1, &plan, NULL) == LC_OK);
+        passed += out.verdict == LC_PASS;
+    }
+    check_rate(passed, count, level);
+    ck_assert_msg(passed > 0.6 * level * count, "%d of %d: wasted", passed, count);
+}
+END_TEST
+
+Suite *lc_suite_judge_mutants(void)
+{
+    Suite *suite = suite_create("judge_mutants");
+    TCase *cases = tcase_create("judge");
+    tcase_add_test(cases, right_passes_and_wrong_fails);
+    tcase_add_test(cases, bad_samples_fail);
+    tcase_add_test(cases, undecided_is_not_a_pass);
+    tcase_add_test(cases, the_last_look_is_taken);
+    tcase_add_test(cases, every_look_is_paid_for);
+    tcase_add_test(cases, every_pass_is_paid_for);
+    tcase_add_test(cases, a_measured_margin_has_noise);
+    tcase_set_timeout(cases, 60);
+    suite_add_tcase(suite, cases);
+    return suite;
+}
