@@ -58,7 +58,7 @@ LIB  := $(patsubst %.c,$(BUILD)/obj/%.o,$(filter-out estimators/template.c,$(wil
 CLI  := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard src/cli/*.c))
 TEST := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard verify/tests/*.c))
 
-.PHONY: all check verify lint asan-check needs fresh clean help
+.PHONY: all check verify povray-reference lint asan-check needs fresh clean help
 all: $(BUILD)/lightcheck $(BUILD)/obj/estimators/template.o ## build the program
 
 $(BUILD)/lightcheck: $(CLI) $(LIB)
@@ -83,6 +83,9 @@ verify: all ## run the harness: every estimator against every check that applies
 
 check: all $(BUILD)/tests ## run the unit and command-line tests
 	LIGHTCHECK=$(BUILD)/lightcheck $(BUILD)/tests
+
+povray-reference: all ## render the references of the povray check anew (needs POV-Ray, takes minutes)
+	$(BUILD)/lightcheck reference
 
 asan-check: ## the same under the address and undefined-behaviour sanitizers
 	$(MAKE) BUILD=$(BUILD)/asan SANITIZE=address,undefined CFLAGS='-O1 -g' check

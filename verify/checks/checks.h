@@ -17,7 +17,7 @@ typedef struct lc_expected {
         skip; /* 1: a silhouette or an edge of a checkerboard runs through the pixel, whose mean has no closed form: left out */
 } lc_expected;
 
-/* Fills rgb and skip, which are there already and zero. */
+/* Fills rgb and skip, which are there already and zero. LC_WRONG: there is nothing to hold it against, a failure of the row. */
 typedef lc_status lc_expect_fn(lc_expected *out, const struct lc_claim *claim, const lc_scene *scene, int threads,
                                lc_error *err);
 
@@ -32,6 +32,7 @@ typedef struct lc_claim {
     int exact;                 /* 1: sample by sample, no statistics; `other` then draws the same numbers */
     int may_be_still;   /* declared: an estimator may have no variance here, and is then held to the values exactly */
     double tolerance;   /* error of the expected values, relative to their mean; a difference below it is none */
+    double margin;      /* relative; 0: the run's. A wider one than the run's holds: nothing is shown closer than `tolerance` */
     const char *source; /* of what is expected, in words */
 } lc_claim;
 

@@ -12,7 +12,8 @@
     X(emission) \
     X(analytic) \
     X(furnace) \
-    X(equality)
+    X(equality) \
+    X(povray)
 
 #define DECLARE(id) extern const lc_check lc_check_##id;
 #define MEMBER(id) &lc_check_##id,
