@@ -27,6 +27,7 @@ static void describe_bad(lc_row *row, const lc_film *film, uint64_t seed)
 static lc_status describe_missing(lc_row *row, const lc_error *err)
 {
     row->verdict = LC_ROW_FAIL;
+    row->exact = 1; /* nothing was estimated */
     snprintf(row->reason, sizeof row->reason, "%.500s", err->text);
     return LC_OK;
 }

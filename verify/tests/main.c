@@ -8,6 +8,7 @@ static Suite *(*const suites[])(void) = {
     lc_suite_affine,   lc_suite_scene_read,     lc_suite_status,        lc_suite_film,
     lc_suite_analytic, lc_suite_outfile,        lc_suite_exr,           lc_suite_png,
     lc_suite_stats,    lc_suite_stats_estimate, lc_suite_stats_pyramid, lc_suite_analytic_direct,
+    lc_suite_povray,
 };
 
 int main(void)

@@ -23,5 +23,6 @@ Suite *lc_suite_stats(void);
 Suite *lc_suite_stats_estimate(void);
 Suite *lc_suite_stats_pyramid(void);
 Suite *lc_suite_analytic_direct(void);
+Suite *lc_suite_povray(void);
 
 #endif
