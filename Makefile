@@ -60,7 +60,11 @@ TEST := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard verify/tests/*.c))
 # The proofs of the judge: programs of their own, two of whose files have a main.
 PROOF := $(patsubst %.c,$(BUILD)/obj/%.o,$(filter-out %/calibrate.c %/power.c,$(wildcard verify/proof/*.c)))
 
+<<<<<<< HEAD
 .PHONY: all check verify lint asan-check calibrate power judge-mutants needs fresh clean help
+=======
+.PHONY: all check verify povray-reference lint asan-check needs fresh clean help
+>>>>>>> pov
 all: $(BUILD)/lightcheck $(BUILD)/obj/estimators/template.o ## build the program
 
 $(BUILD)/lightcheck: $(CLI) $(LIB)
@@ -88,6 +92,9 @@ verify: all ## run the harness: every estimator against every check that applies
 
 check: all $(BUILD)/tests ## run the unit and command-line tests
 	LIGHTCHECK=$(BUILD)/lightcheck $(BUILD)/tests
+
+povray-reference: all ## render the references of the povray check anew (needs POV-Ray, takes minutes)
+	$(BUILD)/lightcheck reference
 
 asan-check: ## the same under the address and undefined-behaviour sanitizers
 	$(MAKE) BUILD=$(BUILD)/asan SANITIZE=address,undefined CFLAGS='-O1 -g' check

@@ -20,7 +20,7 @@ typedef struct lc_expected {
         skip; /* 1: a silhouette or an edge of a checkerboard runs through the pixel, whose mean has no closed form: left out */
 } lc_expected;
 
-/* Fills rgb and skip, which are there already and zero. */
+/* Fills rgb and skip, which are there already and zero. LC_WRONG: there is nothing to hold it against, a failure of the row. */
 typedef lc_status lc_expect_fn(lc_expected *out, const struct lc_claim *claim, const lc_scene *scene, int threads,
                                lc_error *err);
 
@@ -46,6 +46,7 @@ typedef struct lc_claim {
     int may_be_still;   /* declared: an estimator may have no variance here, and is then held to the values exactly */
     int full_only;    /* 1: for the full suite only: too dear for the quick one, or told by another of its rows */
     double tolerance;   /* error of the expected values, relative to their mean; a difference below it is none */
+    double margin;      /* relative; 0: the run's. A wider one than the run's holds: nothing is shown closer than `tolerance` */
     const char *source; /* of what is expected, in words */
     /* About the host: no scene and no estimator, but */
     lc_decide_fn *decide; /* this; else NULL */

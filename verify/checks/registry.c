@@ -14,7 +14,8 @@
     X(analytic) \
     X(specular) \
     X(furnace) \
-    X(equality)
+    X(equality) \
+    X(povray)
 
 #define DECLARE(id) extern const lc_check lc_check_##id;
 #define MEMBER(id) &lc_check_##id,

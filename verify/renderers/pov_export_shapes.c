@@ -134,7 +134,7 @@ static void write_checker(FILE *out, const lc_texture *t)
     write_color(out, t->color[0]);
     fprintf(out, ", ");
     write_color(out, t->color[1]);
-    fprintf(out, " scale <%.15g, %.15g, 1> translate <%.15g, %.15g, 0.5>", 1 / t->scale[0], 1 / t->scale[1],
+    fprintf(out, " scale <%.15g, %.15g, 1> translate <%.15g, %.15g, -0.5>", 1 / t->scale[0], 1 / t->scale[1],
             -(t->scale[0] + 2 * t->offset[0]) / t->scale[0], -(t->scale[1] + 2 * t->offset[1]) / t->scale[1]);
 }
 

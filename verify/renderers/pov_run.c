@@ -152,7 +152,7 @@ static lc_status report_failure(const char *folder, int exit_status, lc_error *e
         line[strcspn(line, "\r\n")] = 0;
         if (line[0])
             snprintf(end, sizeof end, "%.299s", line);
-        if (!strstr(line, "rror") && !strstr(line, "annot"))
+        if (!strstr(line, "rror"))
             continue;
         snprintf(first[0] ? last : first, sizeof first, "%.299s", line);
     }

@@ -18,6 +18,7 @@ static Suite *(*const suites[])(void) = {
     lc_suite_surface,    lc_suite_render,         lc_suite_cli,           lc_suite_report,
     lc_suite_estimators,
     lc_suite_judge_mutants,
+    lc_suite_povray,
 };
 
 int main(void)
