@@ -60,11 +60,7 @@ TEST := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard verify/tests/*.c))
 # The proofs of the judge: programs of their own, two of whose files have a main.
 PROOF := $(patsubst %.c,$(BUILD)/obj/%.o,$(filter-out %/calibrate.c %/power.c,$(wildcard verify/proof/*.c)))
 
-<<<<<<< HEAD
-.PHONY: all check verify lint asan-check calibrate power judge-mutants needs fresh clean help
-=======
-.PHONY: all check verify povray-reference lint asan-check needs fresh clean help
->>>>>>> pov
+.PHONY: all check verify povray-reference lint asan-check calibrate power judge-mutants needs fresh clean help
 all: $(BUILD)/lightcheck $(BUILD)/obj/estimators/template.o ## build the program
 
 $(BUILD)/lightcheck: $(CLI) $(LIB)

@@ -148,4 +148,5 @@ const lc_check lc_check_povray = {
     "images by POV-Ray, within a band that its own convergence gives",
     "POV-Ray 3.7 (povray.org); docs/povray.md",
     plan,
+    NULL,
 };

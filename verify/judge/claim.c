@@ -250,16 +250,8 @@ static lc_status judge_statistically(lc_row *row, lc_session *session, const lc_
     /* A mean anywhere within the tolerance must be shown to be within the margin. */
     double room = claim->margin > 0 ? row->margin - claim->tolerance : row->margin;
 
-<<<<<<< HEAD
     /* Both arms grow together. */
-    lc_looks looks = row_looks(lc_planned_samples(hypot(c, c_other), row->margin, pixels));
-=======
-    /* Both arms grow together, and one look more than planned is kept in reserve. */
-    lc_looks looks = lc_looks_plan(LC_LEAST_SAMPLES, lc_planned_samples(hypot(c, c_other), room, pixels));
-    if (looks.first < LC_LEAST_SAMPLES)
-        looks.first = LC_LEAST_SAMPLES;
-    looks.count = looks.count < LC_MOST_LOOKS ? looks.count + 1 : LC_MOST_LOOKS;
->>>>>>> pov
+    lc_looks looks = row_looks(lc_planned_samples(hypot(c, c_other), room, pixels));
     lc_budget budget = {session->options->false_fail, session->options->false_pass, session->rows, 3, LC_MOST_LOOKS};
     lc_pyramid_plan plan;
     lc_pyramid_plan_init(&plan, lc_budget_row_fail(&budget), lc_budget_row_pass(&budget));
