@@ -52,14 +52,15 @@ endif
 ALL_CFLAGS := $(WARN) $(CFLAGS) -ffp-contract=off -D_POSIX_C_SOURCE=200809L -I. -Isrc -Isrc/core $(NEEDS_CFLAGS) -pthread -MMD -MP
 ALL_LIBS   := $(NEEDS_LIBS) -lm -pthread
 
-DIRS := src/core src/io estimators verify/stats verify/analytic verify/judge verify/checks verify/mutants verify/report
+DIRS := src/core src/io estimators verify/stats verify/analytic verify/renderers verify/judge verify/checks \
+        verify/mutants verify/report
 LIB  := $(patsubst %.c,$(BUILD)/obj/%.o,$(filter-out estimators/template.c,$(wildcard $(DIRS:%=%/*.c))))
 CLI  := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard src/cli/*.c))
 TEST := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard verify/tests/*.c))
 # The proofs of the judge: programs of their own, two of whose files have a main.
 PROOF := $(patsubst %.c,$(BUILD)/obj/%.o,$(filter-out %/calibrate.c %/power.c,$(wildcard verify/proof/*.c)))
 
-.PHONY: all check verify lint asan-check calibrate power judge-mutants needs fresh clean help
+.PHONY: all check verify povray-reference lint asan-check calibrate power judge-mutants needs fresh clean help
 all: $(BUILD)/lightcheck $(BUILD)/obj/estimators/template.o ## build the program
 
 $(BUILD)/lightcheck: $(CLI) $(LIB)
@@ -87,6 +88,9 @@ verify: all ## run the harness: every estimator against every check that applies
 
 check: all $(BUILD)/tests ## run the unit and command-line tests
 	LIGHTCHECK=$(BUILD)/lightcheck $(BUILD)/tests
+
+povray-reference: all ## render the references of the povray check anew (needs POV-Ray, takes minutes)
+	$(BUILD)/lightcheck reference
 
 asan-check: ## the same under the address and undefined-behaviour sanitizers
 	$(MAKE) BUILD=$(BUILD)/asan SANITIZE=address,undefined CFLAGS='-O1 -g' check

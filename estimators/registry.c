@@ -9,7 +9,10 @@
 #define ESTIMATORS(X) \
     X(hemisphere_direct) \
     X(light_direct) \
-    X(three_point)
+    X(three_point)       \
+    X(path)              \
+    X(mirror)            \
+    X(dielectric)
 
 #define DECLARE(id) extern const lc_estimator lc_estimator_##id;
 #define MEMBER(id) &lc_estimator_##id,

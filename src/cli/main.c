@@ -2,14 +2,16 @@
  *
  * lightcheck: one program, one file a subcommand.
  */
+#include <signal.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "cli/commands.h"
+#include "io/outfile.h"
 
 static const lc_command *const commands[] = {
-    &lc_command_list,    &lc_command_render, &lc_command_sample,
-    &lc_command_compare, &lc_command_merge,  &lc_command_verify,
+    &lc_command_list,  &lc_command_render, &lc_command_sample, &lc_command_compare,
+    &lc_command_merge, &lc_command_verify, &lc_command_export, &lc_command_reference,
 };
 enum { COUNT = sizeof commands / sizeof commands[0] };
 
@@ -23,8 +25,32 @@ static void print_usage(FILE *out)
                  "2 bad usage or input, 3 undecided, 4 an I/O error or our own fault.\n");
 }
 
+/* Ended from outside: nothing half-written stays, and whoever waits sees the signal. */
+static void end(int number)
+{
+    lc_outfile_unlink_all();
+    signal(number, SIG_DFL);
+    raise(number);
+}
+
+static void set_signals(void)
+{
+    static const int ends[] = {SIGINT, SIGTERM, SIGHUP};
+    struct sigaction action = {.sa_handler = SIG_IGN};
+    /* A closed pipe and a limit on file sizes are errors of a write, not deaths. */
+    sigaction(SIGPIPE, &action, NULL);
+    sigaction(SIGXFSZ, &action, NULL);
+    action.sa_handler = end;
+    for (size_t i = 0; i < sizeof ends / sizeof ends[0]; ++i) {
+        struct sigaction before;
+        if (sigaction(ends[i], NULL, &before) == 0 && before.sa_handler != SIG_IGN) /* nohup, a shell's background */
+            sigaction(ends[i], &action, NULL);
+    }
+}
+
 int main(int argc, char **argv)
 {
+    set_signals();
     if (argc < 2) {
         print_usage(stderr);
         return LC_BAD_INPUT;

@@ -8,7 +8,7 @@
 
 typedef struct render_arguments {
     const char *estimator, *size, *shard, *out;
-    int samples, bounces, by_bounce, threads;
+    int samples, bounces, min_bounces, by_bounce, threads;
     uint64_t seed;
     double exposure;
     lc_strings definitions;
@@ -69,8 +69,10 @@ static lc_status render_one(const lc_scene *scene, const lc_estimator *estimator
     return status;
 }
 
-static lc_status render(const render_arguments *a, const char *scene_name, lc_error *err)
+static lc_status render(void *user, const lc_strings *rest, lc_error *err)
 {
+    const render_arguments *a = user;
+    const char *scene_name = rest->items[0];
     const lc_estimator *estimator;
     lc_scene *scene = NULL;
     char path[4096], default_out[128];
@@ -90,6 +92,7 @@ static lc_status render(const render_arguments *a, const char *scene_name, lc_er
     options.arm = lc_arm(estimator->name);
     options.count = (uint64_t)(a->samples > 0 ? a->samples : desc->samples);
     status = lc_cli_bounces(&options.max_bounces, a->bounces, scene, estimator, err);
+    options.min_bounces = a->min_bounces;
     if (status == LC_OK && a->size)
         status = lc_cli_read_pair(&width, &height, a->size, 'x', "--size", err);
     if (status == LC_OK && (width < 1 || height < 1 || width > LC_MAX_SIZE || height > LC_MAX_SIZE))
@@ -121,6 +124,8 @@ static int run(const lc_command *self, int argc, char **argv)
         {'s', "samples", LC_OPT_INT, &a.samples, "SPP", "samples a pixel; default: the scene's", 1, 2e9, NULL},
         {0, "bounces", LC_OPT_INT, &a.bounces, "N", "scattering events at most; default: the scene's, else 5", 0,
          LC_UNBOUNDED, NULL},
+        {0, "min-bounces", LC_OPT_INT, &a.min_bounces, "N", "leaves out the terms below; 1: reflected light only", 0,
+         LC_UNBOUNDED, NULL},
         {0, "by-bounce", LC_OPT_FLAG, &a.by_bounce, NULL,
          "one image for each number of bounces: OUT.0.exr, OUT.1.exr, ...", 0, 0, NULL},
         {0, "size", LC_OPT_STRING, &a.size, "WxH", "pixels; default: the scene's", 0, 0, NULL},
@@ -134,23 +139,9 @@ static int run(const lc_command *self, int argc, char **argv)
         {'D', "define", LC_OPT_LIST, &a.definitions, "NAME=VALUE", "value of a <default> of the scene", 0, 0, NULL},
         {0, NULL, LC_OPT_FLAG, NULL, NULL, NULL, 0, 0, NULL},
     };
-    lc_strings rest;
-    lc_error err = {""};
-    int status = LC_BAD_INPUT;
-    lc_args_result read = lc_args_read(self, options, argc, argv, &rest);
-    if (read == LC_ARGS_HELP)
-        status = LC_OK;
-    else if (read == LC_ARGS_OK && rest.count != 1)
-        status = lc_complain(self, LC_BAD_INPUT,
-                             "expected one scene: a name (see `lightcheck list scenes`) or a path to an .xml file");
-    else if (read == LC_ARGS_OK) {
-        status = (int)render(&a, rest.items[0], &err);
-        if (status != LC_OK)
-            lc_complain(self, (lc_status)status, "%s", err.text);
-    }
-    lc_strings_release(&a.definitions);
-    lc_strings_release(&rest);
-    return status;
+    return lc_command_run(self, options, argc, argv, 1, 1,
+                          "expected one scene: a name (see `lightcheck list scenes`) or a path to an .xml file", render,
+                          &a);
 }
 
 const lc_command lc_command_render = {

@@ -12,7 +12,7 @@
 typedef struct verify_arguments {
     const char *suite, *estimator, *check, *scene, *seed, *format, *report;
     double margin, budget;
-    int threads;
+    int threads, measure;
 } verify_arguments;
 
 static lc_status load_scene(lc_scene **out, const char *name, lc_error *err)
@@ -96,10 +96,21 @@ static lc_status write_folder(const char *folder, const lc_report *report, lc_er
     return status;
 }
 
-static lc_status verify(const verify_arguments *a, lc_error *err)
+static void print_line(void *user, const char *text)
 {
+    (void)user;
+    printf("%s\n", text);
+}
+
+static lc_status verify(void *user, const lc_strings *rest, lc_error *err)
+{
+    const verify_arguments *a = user;
+    if (rest->count)
+        return lc_fail(err, LC_BAD_INPUT, "unexpected argument '%s'", rest->items[0]);
     lc_verify_options options;
     lc_report report;
+    if (a->measure)
+        return lc_measure_cells(load_scene, print_line, NULL, err);
     lc_verify_options_init(&options);
     options.suite = lc_suite_find(a->suite);
     options.margin = a->margin;
@@ -150,24 +161,12 @@ static int run(const lc_command *self, int argc, char **argv)
         {0, "seed", LC_OPT_STRING, &a.seed, "N|random", "default 1; printed, and reproduces the run", 0, 0, NULL},
         {0, "threads", LC_OPT_INT, &a.threads, "N", "default: one a core; changes only the time", 1, 256, NULL},
         {0, "format", LC_OPT_CHOICE, &a.format, "text|json|junit", "default text", 0, 0, "text|json|junit"},
+        {0, "measure", LC_OPT_FLAG, &a.measure, NULL, "prints the noise of each cell, as verify/judge/suites.c has it",
+         0, 0, NULL},
         {0, "report", LC_OPT_STRING, &a.report, "DIR", "writes all formats there, too", 0, 0, NULL},
         {0, NULL, LC_OPT_FLAG, NULL, NULL, NULL, 0, 0, NULL},
     };
-    lc_strings rest;
-    lc_error err = {""};
-    int status = LC_BAD_INPUT;
-    lc_args_result read = lc_args_read(self, options, argc, argv, &rest);
-    if (read == LC_ARGS_HELP)
-        status = LC_OK;
-    else if (read == LC_ARGS_OK && rest.count != 0)
-        status = lc_complain(self, LC_BAD_INPUT, "unexpected argument '%s'", rest.items[0]);
-    else if (read == LC_ARGS_OK) {
-        status = (int)verify(&a, &err);
-        if (err.text[0])
-            lc_complain(self, (lc_status)status, "%s", err.text);
-    }
-    lc_strings_release(&rest);
-    return status;
+    return lc_command_run(self, options, argc, argv, 0, 1 << 20, NULL, verify, &a);
 }
 
 const lc_command lc_command_verify = {

@@ -8,7 +8,8 @@
  *  - It only finds WHICH flat face is hit; the point is then computed in double. Spheres and disks are user geometry, decided in double.
  *  - A ray that leaves a round part knows it, and the root at its origin is divided out. A ray that leaves a face starts a distance
  *    along the normal that bounds the rounding of the vertices, of the origin and of the intersection test: with |n_i| as weights, so
- *    that a floor of 1 km lifts a point by no more than its own height's rounding. Tests count self-hits.
+ *    that a floor of 1 km lifts a point by no more than its own height's rounding; and as far from the face's edges, or rounding would
+ *    let rays out of the corners of a closed room. Tests count self-hits and leaks.
  */
 #include <float.h>
 #include <stdlib.h>
@@ -28,6 +29,13 @@ enum { FACES = 0, ROUNDS = 1 }; /* Embree's geometry IDs */
 #define SAFETY (8 * 0x1p-24)
 #define LEAST_OFFSET 0x1p-40
 
+/* Where a ray that leaves a face may start. */
+typedef struct face_start {
+    double offset; /* along the normal, in unit space */
+    double u,
+        v; /* |u|, |v| at most: in a corner, a start rounded to beyond the neighbouring face would leave a closed room */
+} face_start;
+
 struct lc_accel {
     RTCDevice device;
     RTCScene scene;
@@ -35,8 +43,8 @@ struct lc_accel {
     double scale;
     float (*vertices)[3]; /* four a face, in Embree's hands */
     unsigned (*quads)[4];
-    double *offsets;  /* of each face, in unit space */
-    lc_round *rounds; /* in unit space */
+    face_start *starts; /* of each face */
+    lc_round *rounds;   /* in unit space */
     int face_count, round_count;
 };
 
@@ -199,17 +207,28 @@ static void find_unit_space(lc_accel *accel, const lc_scene *scene)
     accel->center = lc_vec((lower[0] + upper[0]) / 2, (lower[1] + upper[1]) / 2, (lower[2] + upper[2]) / 2);
 }
 
-/* Distance along the normal by which a ray that leaves the face must start, in unit space. */
-static double face_offset(const lc_accel *accel, const lc_face *face)
+/* Bound of what rounding does to a point of the face across a plane whose normal has components of these sizes, in unit space. */
+static double rounding_across(const lc_accel *accel, const lc_face *face, double x, double y, double z)
 {
-    lc_vec3 n = face->n, o = to_unit(accel, face->o);
-    const double weight[3] = {fabs(n.x), fabs(n.y), fabs(n.z)}, at[3] = {fabs(o.x), fabs(o.y), fabs(o.z)};
+    lc_vec3 o = to_unit(accel, face->o);
+    const double weight[3] = {x, y, z}, at[3] = {fabs(o.x), fabs(o.y), fabs(o.z)};
     const double extent[3] = {fabs(face->eu.x) + fabs(face->ev.x), fabs(face->eu.y) + fabs(face->ev.y),
                               fabs(face->eu.z) + fabs(face->ev.z)};
     double sum = 0.0;
     for (int i = 0; i < 3; ++i)
         sum += weight[i] * (at[i] + 3 * accel->scale * extent[i]);
     return SAFETY * sum + LEAST_OFFSET;
+}
+
+static face_start find_start(const lc_accel *accel, const lc_face *face)
+{
+    lc_vec3 n = face->n;
+    double edge = 4 * rounding_across(accel, face, 1, 1, 1) / accel->scale; /* the neighbour may stand at any angle */
+    face_start start;
+    start.offset = rounding_across(accel, face, fabs(n.x), fabs(n.y), fabs(n.z));
+    start.u = fmax(0.0, 1.0 - edge * lc_length(face->du));
+    start.v = fmax(0.0, 1.0 - edge * lc_length(face->dv));
+    return start;
 }
 
 static void add_faces(lc_accel *accel, const lc_scene *scene)
@@ -221,7 +240,7 @@ static void add_faces(lc_accel *accel, const lc_scene *scene)
     accel->quads =
         rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, 4 * sizeof(unsigned), count);
     for (size_t f = 0; accel->vertices && accel->quads && f < count; ++f) {
-        accel->offsets[f] = face_offset(accel, &scene->faces[f]);
+        accel->starts[f] = find_start(accel, &scene->faces[f]);
         for (unsigned i = 0; i < 4; ++i) {
             lc_vec3 p = to_unit(accel, corner(&scene->faces[f], (int)i));
             float *vertex = accel->vertices[4 * f + i];
@@ -267,11 +286,11 @@ lc_status lc_accel_build(lc_accel **out, const lc_scene *scene, lc_error *err)
         return lc_fail(err, LC_FAULT, "out of memory for the accelerator");
     accel->face_count = scene->face_count;
     accel->round_count = scene->round_count;
-    accel->offsets = calloc((size_t)scene->face_count + 1, sizeof *accel->offsets);
+    accel->starts = calloc((size_t)scene->face_count + 1, sizeof *accel->starts);
     accel->rounds = calloc((size_t)scene->round_count + 1, sizeof *accel->rounds);
     /* One thread: the tree must not depend on who built which branch first. */
     accel->device = rtcNewDevice("threads=1,set_affinity=0");
-    if (!accel->offsets || !accel->rounds || !accel->device) {
+    if (!accel->starts || !accel->rounds || !accel->device) {
         lc_accel_free(accel);
         return lc_fail(err, LC_FAULT, "cannot make an Embree device");
     }
@@ -300,7 +319,7 @@ void lc_accel_free(lc_accel *accel)
         rtcReleaseScene(accel->scene);
     if (accel->device)
         rtcReleaseDevice(accel->device);
-    free(accel->offsets);
+    free(accel->starts);
     free(accel->rounds);
     free(accel);
 }
@@ -324,13 +343,22 @@ static void start_query(query *q, const lc_accel *accel, lc_vec3 o, lc_vec3 d, d
     q->t = 0.0;
 }
 
-/* Where Embree's ray starts (or ends) instead of at `p` on face `part`: off the face, towards `to`. */
-static lc_vec3 off_face(const lc_accel *accel, lc_vec3 p, int part, lc_vec3 n, lc_vec3 to, double extra)
+/* Where Embree's ray starts (or ends) instead of at `p` [unit space] on the part: off a face, towards `to`, and not at its very edge. */
+static lc_vec3 off_face(const lc_accel *accel, const lc_scene *scene, lc_vec3 p, int part, lc_vec3 to, double extra)
 {
     if (part < 0 || part >= accel->face_count)
         return p;
-    double offset = accel->offsets[part] + extra;
-    return lc_add(p, lc_scale(lc_dot(n, to) < 0 ? -offset : offset, n));
+    const face_start *start = &accel->starts[part];
+    const lc_face *face = &scene->faces[part];
+    lc_vec3 r = lc_sub(p, to_unit(accel, face->o)); /* du, dv and eu, ev are in world space: the scales cancel */
+    double u = lc_dot(face->du, r), v = lc_dot(face->dv, r), most_u = start->u * accel->scale,
+           most_v = start->v * accel->scale;
+    if (fabs(u) > most_u)
+        p = lc_add(p, lc_scale(copysign(most_u, u) - u, face->eu));
+    if (fabs(v) > most_v)
+        p = lc_add(p, lc_scale(copysign(most_v, v) - v, face->ev));
+    double offset = start->offset + extra;
+    return lc_add(p, lc_scale(lc_dot(face->n, to) < 0 ? -offset : offset, face->n));
 }
 
 static void fill_ray(struct RTCRay *ray, lc_vec3 o, lc_vec3 d, double t_far, double time)
@@ -349,12 +377,21 @@ static void fill_ray(struct RTCRay *ray, lc_vec3 o, lc_vec3 d, double t_far, dou
     ray->flags = 0;
 }
 
-/* The point where the ray meets the plane of the face, in double. */
+/* The point where the ray meets the plane of the face, in double. Embree's ray was a little another one, so that along an edge the point
+ * may lie off the face, and far off at grazing angles: then the nearest one on it. */
 static void finish_face(const lc_face *face, lc_vec3 o, lc_vec3 d, lc_hit *hit)
 {
     double t = lc_dot(face->n, lc_sub(face->o, o)) / lc_dot(face->n, d);
     t = fmax(t, 0.0); /* in a corner, rounding may put `o` a hair behind the neighbour */
     hit->p = lc_add(o, lc_scale(t, d));
+    lc_vec3 r = lc_sub(hit->p, face->o);
+    double u = lc_dot(face->du, r), v = lc_dot(face->dv, r);
+    if (fabs(u) > 1.0 || fabs(v) > 1.0) {
+        u = fmax(-1.0, fmin(u, 1.0));
+        v = fmax(-1.0, fmin(v, 1.0));
+        hit->p = lc_add(face->o, lc_add(lc_scale(u, face->eu), lc_scale(v, face->ev)));
+        t = lc_length(lc_sub(hit->p, o));
+    }
     hit->n = face->n;
     hit->distance = t;
     hit->shape = face->shape;
@@ -374,7 +411,7 @@ static void finish_round(const lc_round *round, lc_vec3 o, lc_vec3 d, double t, 
 }
 
 int lc_accel_intersect(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, lc_vec3 d, double time, int from_part,
-                       lc_vec3 from_n, lc_hit *hit)
+                       lc_hit *hit)
 {
     lc_vec3 start = to_unit(accel, o);
     double skipped = 0.0, reach = lc_dot(start, start);
@@ -389,7 +426,7 @@ int lc_accel_intersect(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, 
     query q;
     start_query(&q, accel, start, d, INFINITY, from_part, -1);
     struct RTCRayHit rayhit;
-    fill_ray(&rayhit.ray, off_face(accel, start, from_part, from_n, d, 0.0), d, INFINITY, time);
+    fill_ray(&rayhit.ray, off_face(accel, scene, start, from_part, d, 0.0), d, INFINITY, time);
     rayhit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     rayhit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
 #if LC_EMBREE == 4
@@ -413,16 +450,15 @@ int lc_accel_intersect(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, 
     return 0;
 }
 
-int lc_accel_occluded(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, int from_part, lc_vec3 from_n,
-                      lc_vec3 target, int to_part, lc_vec3 to_n, int to_infinity, double time)
+int lc_accel_occluded(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, int from_part, lc_vec3 target,
+                      int to_part, lc_vec3 to_n, int to_infinity, double time)
 {
-    (void)scene;
     query q;
     struct RTCRay ray;
     lc_vec3 a = to_unit(accel, o);
     if (to_infinity) {
         start_query(&q, accel, a, target, INFINITY, from_part, -1);
-        fill_ray(&ray, off_face(accel, a, from_part, from_n, target, 0.0), target, INFINITY, time);
+        fill_ray(&ray, off_face(accel, scene, a, from_part, target, 0.0), target, INFINITY, time);
     } else {
         lc_vec3 b = to_unit(accel, target), along = lc_sub(b, a);
         double length = lc_length(along);
@@ -433,8 +469,8 @@ int lc_accel_occluded(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, i
         double rounding = 2 * 0x1p-24 *
                           (fabs(to_n.x) * (fabs(a.x) + fabs(along.x)) + fabs(to_n.y) * (fabs(a.y) + fabs(along.y)) +
                            fabs(to_n.z) * (fabs(a.z) + fabs(along.z)));
-        lc_vec3 start = off_face(accel, a, from_part, from_n, along, 0.0);
-        lc_vec3 end = off_face(accel, b, to_part, to_n, lc_neg(along), rounding);
+        lc_vec3 start = off_face(accel, scene, a, from_part, along, 0.0);
+        lc_vec3 end = off_face(accel, scene, b, to_part, lc_neg(along), rounding);
         fill_ray(&ray, start, lc_sub(end, start), 1.0, time);
     }
 #if LC_EMBREE == 4

@@ -2,7 +2,7 @@
  *
  * The pinhole camera, as Mitsuba 3's `perspective` defines it.
  */
-#include "core/host.h"
+#include "core/scene_c.h"
 
 static double tan_half_fov_x(const lc_camera_desc *camera, double aspect)
 {
@@ -22,17 +22,31 @@ static double tan_half_fov_x(const lc_camera_desc *camera, double aspect)
     return t;
 }
 
-lc_ray lc_camera_ray(const lc_camera_desc *camera, int width, int height, double x, double y)
+void lc_camera_prepare(lc_camera_frame *frame, const lc_camera_desc *camera, int width, int height)
 {
     double aspect = (double)width / height, t = tan_half_fov_x(camera, aspect);
-    lc_vec3 local = lc_vec((1.0 - 2.0 * x / width) * t, (1.0 - 2.0 * y / height) * t / aspect, 1.0);
-    lc_vec3 along = lc_affine_vector(&camera->to_world, local); /* reaches the plane at distance 1 */
-    lc_vec3 eye = lc_affine_point(&camera->to_world, lc_vec(0, 0, 0));
+    frame->eye = lc_affine_point(&camera->to_world, lc_vec(0, 0, 0));
+    frame->corner = lc_affine_vector(&camera->to_world, lc_vec(t, t / aspect, 1));
+    frame->right = lc_affine_vector(&camera->to_world, lc_vec(-2 * t / width, 0, 0));
+    frame->down = lc_affine_vector(&camera->to_world, lc_vec(0, -2 * t / aspect / height, 0));
+    frame->near_clip = camera->near_clip;
+}
+
+lc_ray lc_camera_frame_ray(const lc_camera_frame *frame, double x, double y)
+{
+    lc_vec3 along = lc_add(frame->corner, lc_add(lc_scale(x, frame->right), lc_scale(y, frame->down)));
     lc_ray ray;
-    ray.o = lc_add(eye, lc_scale(camera->near_clip, along));
+    ray.o = lc_add(frame->eye, lc_scale(frame->near_clip, along));
     ray.d = lc_normalize(along);
     ray.time = 0.0;
     return ray;
+}
+
+lc_ray lc_camera_ray(const lc_camera_desc *camera, int width, int height, double x, double y)
+{
+    lc_camera_frame frame;
+    lc_camera_prepare(&frame, camera, width, height);
+    return lc_camera_frame_ray(&frame, x, y);
 }
 
 void lc_camera_see(const lc_scene *scene, const lc_ray *ray, lc_hit *hit)

@@ -251,7 +251,7 @@ typedef struct lc_render_options {
     uint64_t first, count;                     /* sample indices */
     int threads;                               /* 0: one a core */
     int shard, shards;                         /* shards = 0 or 1: everything */
-    void (*progress)(void *user, double done); /* may be NULL; 0..1, from one thread */
+    void (*progress)(void *user, double done); /* may be NULL; 0..1, ends with 1; from one thread */
     void *user;
 } lc_render_options;
 

@@ -122,9 +122,9 @@ int lc_light_sample_union(const lc_scene *scene, const lc_hit *hit, lc_sampler *
 int lc_visible(const lc_scene *scene, const lc_hit *hit, const lc_light_sample *light)
 {
     int to_infinity = isinf(light->distance);
-    int visible = hit->valid &&
-                  !lc_accel_occluded(scene->accel, scene, hit->p, hit->part, hit->n, to_infinity ? light->wi : light->p,
-                                     light->part, light->n, to_infinity, hit->time);
+    int visible =
+        hit->valid && !lc_accel_occluded(scene->accel, scene, hit->p, hit->part, to_infinity ? light->wi : light->p,
+                                         light->part, light->n, to_infinity, hit->time);
     if (scene->log)
         lc_log(scene->log, "visible: %s", visible ? "yes" : "no");
     return visible;

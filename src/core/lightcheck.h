@@ -107,9 +107,30 @@ lc_material lc_material_at(const lc_scene *scene, const lc_hit *hit);
  * mirror or glass has no value anywhere, only a weight. Lambert: albedo / pi on the side of wo, else black. */
 lc_rgb lc_bsdf_eval(const lc_scene *scene, const lc_hit *hit, lc_vec3 wi);
 
-/* Mirror and glass. `wo` and unit `n` may lie on either side of the surface; `ior` as in lc_material: index beyond / index on the side of wo.
- * lc_fresnel: reflectance for unpolarised light, cos_i in [0, 1] the cosine of wo with the normal; 1 at total reflection (Born and Wolf,
- * Principles of Optics, 1.5.2). lc_refract: where light comes from to leave along wo, by Snell; returns 0 at total reflection. */
+/* One way on for a path. The quotient is left to you: throughput *= value cos_surface / pdf, or, where is_delta,
+ * value / pdf. */
+typedef struct lc_scatter {
+    lc_vec3 wi;   /* where to look next: either side of the surface */
+    int lobe;     /* LC_DIFFUSE, LC_MIRROR or LC_GLASS: the one that was chosen */
+    int is_delta; /* 1: mirror or glass, which know one direction and no density */
+    lc_rgb value; /* finite: lc_bsdf_eval() [1/sr]. delta: radiance along wo / radiance from wi; through glass
+                   * share (1 - F) / ior^2, for a lossless interface keeps L / n^2 (Veach, thesis 1997, 5.2) */
+    double pdf;   /* finite: lc_bsdf_pdf() [1/sr]. delta: the probability of this choice */
+} lc_scatter;
+
+/* Picks wi: a lobe in proportion to its reflectance (its largest channel; glass reflects with F and transmits with
+ * 1 - F), then within the diffuse lobe in proportion to the cosine. Draws three numbers. The quotient never exceeds 1,
+ * but for glass's 1 / ior^2. Returns 0, *out untouched, where nothing is reflected: absorbed. */
+int lc_bsdf_sample(const lc_scene *scene, const lc_hit *hit, lc_sampler *sampler, lc_scatter *out);
+
+/* Density with which lc_bsdf_sample() picks `wi` by its finite lobes, the choice among all lobes included [1/sr];
+ * delta lobes add 0. */
+double lc_bsdf_pdf(const lc_scene *scene, const lc_hit *hit, lc_vec3 wi);
+
+/* Mirror and glass. `wo` and unit `n` may lie on either side of the surface; `ior` as in lc_material: index beyond /
+ * index on the side of wo. lc_fresnel: reflectance for unpolarised light, cos_i in [0, 1] the cosine of wo with the
+ * normal; 1 at total reflection (Born and Wolf, Principles of Optics, 1.5.2). lc_refract: where light comes from to
+ * leave along wo, by Snell; returns 0 at total reflection. */
 double lc_fresnel(double cos_i, double ior);
 lc_vec3 lc_reflect(lc_vec3 wo, lc_vec3 n);
 int lc_refract(lc_vec3 wo, lc_vec3 n, double ior, lc_vec3 *wi);

@@ -15,6 +15,7 @@ typedef struct job {
     const lc_scene *scene;
     const lc_estimator *estimator;
     const lc_render_options *options;
+    lc_camera_frame frame;
     int tiles_x, tiles;
     pthread_mutex_t lock; /* of all that follows */
     int next_tile, done;
@@ -32,11 +33,11 @@ static int is_bad(lc_rgb c)
 }
 
 static lc_rgb one_sample(const lc_scene *scene, const lc_estimator *estimator, const lc_options *bounces,
-                         lc_sampler *sampler, int width, int height, int x, int y)
+                         lc_sampler *sampler, const lc_camera_frame *frame, int x, int y)
 {
     lc_hit hit;
     double dx = lc_next(sampler), dy = lc_next(sampler);
-    lc_ray ray = lc_camera_ray(&scene->desc.camera, width, height, x + dx, y + dy);
+    lc_ray ray = lc_camera_frame_ray(frame, x + dx, y + dy);
     lc_camera_see(scene, &ray, &hit);
     lc_sampler_seek(sampler, LC_DIMENSION_ESTIMATOR);
     return estimator->radiance(scene, &ray, &hit, bounces, sampler);
@@ -52,7 +53,7 @@ static void render_pixel(const job *j, int x, int y, bad_samples *bad)
     for (uint64_t s = o->first; s < o->first + o->count; ++s) {
         lc_sampler sampler;
         lc_sampler_start(&sampler, o->seed, o->arm, pixel, (uint32_t)s);
-        lc_rgb c = one_sample(j->scene, j->estimator, &bounces, &sampler, j->film->width, j->film->height, x, y);
+        lc_rgb c = one_sample(j->scene, j->estimator, &bounces, &sampler, &j->frame, x, y);
         if (is_bad(c)) {
             if (bad->count++ == 0 || pixel < bad->pixel) {
                 bad->pixel = pixel;
@@ -88,7 +89,7 @@ static void finish_tile(job *j, int reports)
     int done = ++j->done;
     pthread_mutex_unlock(&j->lock);
     if (reports && j->options->progress)
-        j->options->progress(j->options->user, (double)done * j->options->shards / j->tiles);
+        j->options->progress(j->options->user, fmin((double)done * j->options->shards / j->tiles, 1.0));
 }
 
 static void report_bad(job *j, const bad_samples *bad)
@@ -142,6 +143,8 @@ static lc_status check_options(const lc_film *film, const lc_scene *scene, const
         return lc_fail(err, LC_BAD_INPUT,
                        "%s: samples %llu to %llu of a pixel, expected at least one and at most 2^32 - 1", scene_name,
                        (unsigned long long)o->first, (unsigned long long)(o->first + o->count));
+    if (o->shards > LC_MAX_SHARDS)
+        return lc_fail(err, LC_BAD_INPUT, "%s: %d shards, expected at most %d", scene_name, o->shards, LC_MAX_SHARDS);
     if (o->shards > 1 && (o->shard < 0 || o->shard >= o->shards))
         return lc_fail(err, LC_BAD_INPUT, "%s: shard %d of %d, expected 0 to %d", scene_name, o->shard, o->shards,
                        o->shards - 1);
@@ -166,8 +169,14 @@ lc_status lc_render(lc_film *film, const lc_scene *scene, const lc_estimator *es
         o.shard = 0;
         o.shards = 1;
     }
-    job j = {film,    scene, estimator, &o, (film->width + LC_TILE - 1) / LC_TILE, 0, PTHREAD_MUTEX_INITIALIZER,
-             o.shard, 0};
+    job j = {.film = film,
+             .scene = scene,
+             .estimator = estimator,
+             .options = &o,
+             .tiles_x = (film->width + LC_TILE - 1) / LC_TILE,
+             .lock = PTHREAD_MUTEX_INITIALIZER,
+             .next_tile = o.shard};
+    lc_camera_prepare(&j.frame, &scene->desc.camera, film->width, film->height);
     j.tiles = j.tiles_x * ((film->height + LC_TILE - 1) / LC_TILE);
 
     long cores = o.threads > 0 ? o.threads : sysconf(_SC_NPROCESSORS_ONLN);
@@ -178,6 +187,8 @@ lc_status lc_render(lc_film *film, const lc_scene *scene, const lc_estimator *es
     work(&j, 1);
     for (int i = 0; i < started; ++i)
         pthread_join(threads[i], NULL);
+    if (o.progress)
+        o.progress(o.user, 1.0);
 
     if (film->count == 0) {
         film->first = o.first;
@@ -207,7 +218,9 @@ lc_rgb lc_replay(lc_scene *scene, const lc_estimator *estimator, const lc_render
     sampler.log = log;
     scene->log = log;
     lc_replay_begin();
-    lc_rgb radiance = one_sample(scene, estimator, &bounces, &sampler, width, height, x, y);
+    lc_camera_frame frame;
+    lc_camera_prepare(&frame, &scene->desc.camera, width, height);
+    lc_rgb radiance = one_sample(scene, estimator, &bounces, &sampler, &frame, x, y);
     scene->log = NULL;
     return radiance;
 }

@@ -71,7 +71,7 @@ static void make_round(lc_round *round, const lc_shape_desc *desc, int shape)
     round->sign = desc->flip_normals ? -1.0 : 1.0;
     round->shape = shape;
     if (round->is_sphere) {
-        round->radius = cbrt(fabs(lc_affine_determinant(m)));
+        round->radius = lc_length(round->eu); /* not cbrt(det), which rounds otherwise at another scale */
         round->n = lc_affine_vector(m, lc_vec(0, 0, 1));
         round->area = 4.0 * LC_PI * round->radius * round->radius;
     } else {

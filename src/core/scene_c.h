@@ -57,17 +57,27 @@ struct lc_scene {
 typedef struct lc_accel lc_accel;
 lc_status lc_accel_build(lc_accel **out, const lc_scene *scene, lc_error *err);
 void lc_accel_free(lc_accel *accel);
-/* The first hit from `o` along unit `d`; `from_part` is the part it starts on, with normal `from_n`, or -1. Fills p, n, distance, shape, part. */
+/* The first hit from `o` along unit `d`; `from_part` is the part it starts on, or -1. Fills p, n, distance, shape, part. */
 int lc_accel_intersect(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, lc_vec3 d, double time, int from_part,
-                       lc_vec3 from_n, lc_hit *hit);
+                       lc_hit *hit);
 /* Whether something lies strictly between `o` and `q` (q on part `to_part` with normal to_n, or -1), or along unit `q` to infinity. */
-int lc_accel_occluded(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, int from_part, lc_vec3 from_n, lc_vec3 q,
-                      int to_part, lc_vec3 to_n, int to_infinity, double time);
+int lc_accel_occluded(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, int from_part, lc_vec3 q, int to_part,
+                      lc_vec3 to_n, int to_infinity, double time);
+
+/* camera.c: the image plane at distance 1, so that a ray is two multiplications away. */
+typedef struct lc_camera_frame {
+    lc_vec3 eye, corner, right, down; /* the upper left corner, and one pixel's steps, as seen from the eye */
+    double near_clip;
+} lc_camera_frame;
+void lc_camera_prepare(lc_camera_frame *frame, const lc_camera_desc *camera, int width, int height);
+lc_ray lc_camera_frame_ray(const lc_camera_frame *frame, double x, double y);
 
 /* warp.c */
 void lc_tangents(lc_vec3 n, lc_vec3 *s, lc_vec3 *t);
 lc_vec3 lc_uniform_sphere(double u, double v);
 
+/* lc_material_at() without a word in the log. */
+lc_material lc_surface_material(const lc_scene *scene, const lc_hit *hit);
 /* What the front of a shape emits at p [W sr^-1 m^-2]. */
 lc_rgb lc_shape_radiance(const lc_scene *scene, int shape, int part, lc_vec3 p);
 /* Texture coordinates of a point on a shape, as Mitsuba 3 has them. */

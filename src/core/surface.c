@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  *
- * What happens at a hit: following a ray, the material, its BSDF, what it emits.
+ * What happens at a hit: following a ray, the material, what it emits.
  */
 #include <stdarg.h>
 #include <stdio.h>
@@ -37,7 +37,7 @@ void lc_intersect(const lc_scene *scene, const lc_ray *ray, lc_hit *hit)
 {
     hit->wo = lc_neg(ray->d);
     hit->time = ray->time;
-    hit->valid = lc_accel_intersect(scene->accel, scene, ray->o, ray->d, ray->time, -1, ray->d, hit);
+    hit->valid = lc_accel_intersect(scene->accel, scene, ray->o, ray->d, ray->time, -1, hit);
     if (scene->log)
         log_hit(scene, "camera ray hits", hit);
 }
@@ -46,8 +46,7 @@ int lc_trace(const lc_scene *scene, const lc_hit *from, lc_vec3 wi, lc_hit *next
 {
     lc_hit hit = *from;
     hit.wo = lc_neg(wi);
-    hit.valid =
-        from->valid && lc_accel_intersect(scene->accel, scene, from->p, wi, from->time, from->part, from->n, &hit);
+    hit.valid = from->valid && lc_accel_intersect(scene->accel, scene, from->p, wi, from->time, from->part, &hit);
     if (scene->log)
         log_hit(scene, "ray hits", &hit);
     *next = hit;
@@ -98,7 +97,7 @@ static lc_rgb texture_on(const lc_scene *scene, const lc_texture *texture, int s
 
 static int is_front(const lc_hit *hit) { return lc_dot(hit->n, hit->wo) > 0; }
 
-lc_material lc_material_at(const lc_scene *scene, const lc_hit *hit)
+lc_material lc_surface_material(const lc_scene *scene, const lc_hit *hit)
 {
     lc_material material = {{0, 0, 0}, {0, 0, 0}, 0, 1};
     if (!hit->valid)
@@ -110,24 +109,17 @@ lc_material lc_material_at(const lc_scene *scene, const lc_hit *hit)
     material.glass = side->glass;
     if (side->glass > 0)
         material.ior = is_front(hit) ? desc->int_ior / desc->ext_ior : desc->ext_ior / desc->int_ior;
-    if (scene->log)
+    return material;
+}
+
+lc_material lc_material_at(const lc_scene *scene, const lc_hit *hit)
+{
+    lc_material material = lc_surface_material(scene, hit);
+    if (scene->log && hit->valid)
         lc_log(scene->log, "material: diffuse (%.6g, %.6g, %.6g), mirror (%.6g, %.6g, %.6g), glass %.6g, ior %.6g",
                material.diffuse.r, material.diffuse.g, material.diffuse.b, material.mirror.r, material.mirror.g,
                material.mirror.b, material.glass, material.ior);
     return material;
-}
-
-lc_rgb lc_bsdf_eval(const lc_scene *scene, const lc_hit *hit, lc_vec3 wi)
-{
-    lc_rgb f = lc_black();
-    if (hit->valid && lc_dot(hit->n, wi) * lc_dot(hit->n, hit->wo) > 0) {
-        const lc_material_desc *desc = &scene->desc.materials[scene->desc.shapes[hit->shape].material];
-        f = lc_rgb_scale(LC_INV_PI,
-                         texture_on(scene, &desc->side[is_front(hit) ? 0 : 1].diffuse, hit->shape, hit->part, hit->p));
-    }
-    if (scene->log)
-        lc_log(scene->log, "bsdf: wi (%.9g, %.9g, %.9g), f (%.9g, %.9g, %.9g) 1/sr", wi.x, wi.y, wi.z, f.r, f.g, f.b);
-    return f;
 }
 
 /* Emitted by the front of the shape at p. */

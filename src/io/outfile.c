@@ -107,6 +107,20 @@ static char *follow_links(const char *path)
     return NULL;
 }
 
+/* Creates the file and lists it in `live`, with no signal between the two; returns its descriptor, or -1 with errno. */
+static int create_listed(int *slot, const char *path)
+{
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    int fd = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666), error = errno;
+    if (fd >= 0)
+        *slot = live_add(path);
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    errno = error;
+    return fd;
+}
+
 /* Creates file->temporary beside the target; returns its descriptor, or -1 with errno. */
 static int create_temporary(lc_outfile *file)
 {
@@ -120,9 +134,7 @@ static int create_temporary(lc_outfile *file)
     for (int i = 0; i < TRIES; ++i) {
         /* Not mkstemp, whose mode 0600 would become the result's: the umask decides. */
         snprintf(file->temporary + folder, size - folder, ".lightcheck-%ld-%d.tmp", (long)getpid(), i);
-        int fd = open(file->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (fd >= 0)
-            file->slot = live_add(file->temporary);
+        int fd = create_listed(&file->slot, file->temporary);
         if (fd >= 0 || errno != EEXIST)
             return fd;
     }

@@ -4,10 +4,11 @@
 
 double lc_fresnel_dielectric(double cos_i, double eta)
 {
-    double sin2_t = (1 - cos_i) * (1 + cos_i) / (eta * eta);
-    if (sin2_t >= 1)
+    /* 1 - sin^2 t, without the loss of digits at grazing angles that would let an index of 1 reflect 5e-10. */
+    double cos2_t = (cos_i * cos_i + (eta - 1) * (eta + 1)) / (eta * eta);
+    if (cos2_t <= 0)
         return 1;
-    double cos_t = sqrt(1 - sin2_t);
+    double cos_t = sqrt(cos2_t);
     double s = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
     double p = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
     return (s * s + p * p) / 2;

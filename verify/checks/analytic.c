@@ -97,6 +97,8 @@ static lc_status plan(const lc_check *self, lc_claims *claims, const lc_scene *s
         claim->tolerance = rows[i].tolerance;
         claim->exact = rows[i].expect == expect_black;
         claim->source = rows[i].source;
+        /* At one bounce a path tracer is its own direct estimator: one scene tells as much. */
+        claim->full_only = estimator->max_bounces > 1 && !claim->exact && strcmp(name, "sky") != 0;
         claim->may_be_still = lc_scene_emitters(scene) == LC_DIRECTIONAL;
     }
     return LC_OK;
@@ -107,4 +109,5 @@ const lc_check lc_check_analytic = {
     "direct light against closed forms, pixel by pixel",
     "Lambert 1760; Howell, A Catalog of Radiation Heat Transfer Configuration Factors; docs/checks.md",
     plan,
+    NULL,
 };

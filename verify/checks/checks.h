@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  *
- * checks.h: a check turns (scene, estimator) into claims; the judge decides them. One file = one kind of check = one line in registry.c.
+ * checks.h: a check turns (scene, estimator) into claims; the judge decides them. One file = one kind of check = one
+ * line in registry.c. A claim may also be about the host itself; then it brings its own decision, and the judge only
+ * gives it its share of the budget.
  */
 #ifndef LC_CHECKS_H
 #define LC_CHECKS_H
@@ -8,6 +10,7 @@
 #include "core/host.h"
 
 struct lc_claim;
+struct lc_row;
 
 /* What is expected of each pixel, box-filtered, row by row. */
 typedef struct lc_expected {
@@ -17,9 +20,19 @@ typedef struct lc_expected {
         skip; /* 1: a silhouette or an edge of a checkerboard runs through the pixel, whose mean has no closed form: left out */
 } lc_expected;
 
-/* Fills rgb and skip, which are there already and zero. */
+/* Fills rgb and skip, which are there already and zero. LC_WRONG: there is nothing to hold it against, a failure of the row. */
 typedef lc_status lc_expect_fn(lc_expected *out, const struct lc_claim *claim, const lc_scene *scene, int threads,
                                lc_error *err);
+
+/* What a claim that decides itself may spend. */
+typedef struct lc_share {
+    double false_fail, false_pass; /* probability of each, for the whole row */
+    double margin;                 /* relative: what PASS has to show */
+    uint64_t seed;
+} lc_share;
+
+/* Fills verdict, numbers and reason of a row whose names are there already. An error is one of ours, not a verdict. */
+typedef lc_status lc_decide_fn(struct lc_row *row, const struct lc_claim *claim, const lc_share *share, lc_error *err);
 
 /* "Over this scene, the mean of this estimator is ...": */
 typedef struct lc_claim {
@@ -31,8 +44,13 @@ typedef struct lc_claim {
     lc_expect_fn *expect;      /* ... these values */
     int exact;                 /* 1: sample by sample, no statistics; `other` then draws the same numbers */
     int may_be_still;   /* declared: an estimator may have no variance here, and is then held to the values exactly */
+    int full_only;    /* 1: for the full suite only: too dear for the quick one, or told by another of its rows */
     double tolerance;   /* error of the expected values, relative to their mean; a difference below it is none */
+    double margin;      /* relative; 0: the run's. A wider one than the run's holds: nothing is shown closer than `tolerance` */
     const char *source; /* of what is expected, in words */
+    /* About the host: no scene and no estimator, but */
+    lc_decide_fn *decide; /* this; else NULL */
+    const char *subject;  /* what it is about: shown in the scene's place */
 } lc_claim;
 
 typedef struct lc_claims {
@@ -42,9 +60,11 @@ typedef struct lc_claims {
 
 typedef struct lc_check {
     const char *name, *summary, *source;
-    /* Appends the claims of this kind about (scene, estimator); none where it does not apply. */
+    /* Appends the claims of this kind about (scene, estimator), none where it does not apply; NULL: it never does. */
     lc_status (*plan)(const struct lc_check *self, lc_claims *claims, const lc_scene *scene,
                       const lc_estimator *estimator, lc_error *err);
+    /* Appends the claims about the host, once a run; NULL where there are none. */
+    lc_status (*plan_host)(const struct lc_check *self, lc_claims *claims, lc_error *err);
 } lc_check;
 
 extern const lc_check *const lc_checks[]; /* ends with NULL */

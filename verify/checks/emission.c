@@ -43,4 +43,5 @@ const lc_check lc_check_emission = {
     "L_0 is the emission of the first hit, exactly",
     "Kajiya 1986, eq. 1: the first term",
     plan,
+    NULL,
 };

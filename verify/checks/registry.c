@@ -9,10 +9,13 @@
 #include "verify/checks/checks.h"
 
 #define CHECKS(X) \
+    X(energy) \
     X(emission) \
     X(analytic) \
+    X(specular) \
     X(furnace) \
-    X(equality)
+    X(equality) \
+    X(povray)
 
 #define DECLARE(id) extern const lc_check lc_check_##id;
 #define MEMBER(id) &lc_check_##id,

@@ -23,6 +23,15 @@ static void describe_bad(lc_row *row, const lc_film *film, uint64_t seed)
              (unsigned long long)seed);
 }
 
+/* A missing reference is a failure. */
+static lc_status describe_missing(lc_row *row, const lc_error *err)
+{
+    row->verdict = LC_ROW_FAIL;
+    row->exact = 1; /* nothing was estimated */
+    snprintf(row->reason, sizeof row->reason, "%.500s", err->text);
+    return LC_OK;
+}
+
 static void describe(lc_row *row, const lc_pyramid *p)
 {
     if (row->verdict == LC_ROW_FAIL) {
@@ -143,11 +152,11 @@ static lc_status judge_exact(lc_row *row, lc_session *session, const lc_claim *c
     return LC_OK;
 }
 
-/* 1 when no pixel shows any variance beyond rounding. */
-static int is_still(const lc_film *film)
+/* 1 when no pixel that counts shows any variance beyond rounding. */
+static int is_still(const lc_film *film, const lc_expected *expected)
 {
     for (size_t i = 0; i < (size_t)film->width * (size_t)film->height; ++i)
-        for (int c = 0; c < 3; ++c) {
+        for (int c = 0; c < 3 && !expected->skip[i]; ++c) {
             const lc_moments *m = &film->pixels[i].c[c];
             if (m->m2 > 1e-24 * m->mean * m->mean * (double)film->pixels[i].n)
                 return 0;
@@ -161,8 +170,8 @@ static int is_still(const lc_film *film)
 static lc_status noise_of(double *c, lc_session *session, const lc_claim *claim, const lc_estimator *estimator,
                           lc_error *err)
 {
-    *c = claim->min_bounces == 1 && claim->max_bounces == 1
-             ? lc_cell_noise(lc_scene_description(claim->scene)->name, estimator->name)
+    *c = claim->min_bounces == 1 && lc_is_registered(estimator)
+             ? lc_cell_noise(lc_scene_description(claim->scene)->name, estimator->name, claim->max_bounces)
              : NAN;
     if (!isnan(*c))
         return LC_OK;
@@ -237,17 +246,24 @@ static lc_status judge_statistically(lc_row *row, lc_session *session, const lc_
         status = noise_of(&c_other, session, claim, claim->other, err);
     if (status != LC_OK)
         return status;
-    row->margin = session->margin * fmax(1.0, c);
+    row->margin = fmax(session->margin * fmax(1.0, c), claim->margin);
+    /* A mean anywhere within the tolerance must be shown to be within the margin. */
+    double room = claim->margin > 0 ? row->margin - claim->tolerance : row->margin;
 
     /* Both arms grow together. */
-    lc_looks looks = row_looks(lc_planned_samples(hypot(c, c_other), row->margin, pixels));
+    lc_looks looks = row_looks(lc_planned_samples(hypot(c, c_other), room, pixels));
     lc_budget budget = {session->options->false_fail, session->options->false_pass, session->rows, 3, LC_MOST_LOOKS};
     lc_pyramid_plan plan;
     lc_pyramid_plan_init(&plan, lc_budget_row_fail(&budget), lc_budget_row_pass(&budget));
 
     const lc_expected *expected = NULL;
+    lc_error why = {""};
     if (!claim->other)
-        status = lc_session_values(&expected, session, claim, err);
+        status = lc_session_values(&expected, session, claim, &why);
+    if (status == LC_WRONG)
+        return describe_missing(row, &why);
+    if (status != LC_OK)
+        return lc_fail(err, status, "%s", why.text);
     look_result result = {.verdict = LC_GO_ON};
     for (int k = 0; status == LC_OK && k < looks.count && result.verdict == LC_GO_ON; ++k) {
         const lc_film *film, *other = NULL;
@@ -264,7 +280,7 @@ static lc_status judge_statistically(lc_row *row, lc_session *session, const lc_
             describe_bad(row, film->bad ? film : other, session->options->seed);
             return LC_OK;
         }
-        if (claim->may_be_still && expected && is_still(film)) {
+        if (claim->may_be_still && expected && is_still(film, expected)) {
             row->exact = 1;
             compare_exactly(row, film, NULL, expected, fmax(claim->tolerance, 1e-9));
             return LC_OK;
@@ -279,9 +295,24 @@ static lc_status judge_statistically(lc_row *row, lc_session *session, const lc_
     return LC_OK;
 }
 
+static lc_status judge_host(lc_row *row, const lc_session *session, const lc_claim *claim, lc_error *err)
+{
+    const lc_verify_options *o = session->options;
+    lc_share share = {o->false_fail / session->rows, o->false_pass / session->rows, session->margin, o->seed};
+    snprintf(row->check, sizeof row->check, "%s", claim->check->name);
+    snprintf(row->scene, sizeof row->scene, "%s", claim->subject);
+    snprintf(row->estimator, sizeof row->estimator, "host");
+    snprintf(row->source, sizeof row->source, "%s", claim->source);
+    snprintf(row->reproduce, sizeof row->reproduce, "%s verify --suite %s -c %s --seed %llu", o->program,
+             o->suite->name, row->check, (unsigned long long)o->seed);
+    return claim->decide(row, claim, &share, err);
+}
+
 lc_status lc_judge_claim(lc_row *row, lc_session *session, const lc_claim *claim, lc_error *err)
 {
     const lc_verify_options *o = session->options;
+    if (claim->decide)
+        return judge_host(row, session, claim, err);
     const lc_scene_desc *desc = lc_scene_description(claim->scene);
     snprintf(row->check, sizeof row->check, "%s", claim->check->name);
     snprintf(row->scene, sizeof row->scene, "%s", desc->name);
@@ -290,6 +321,8 @@ lc_status lc_judge_claim(lc_row *row, lc_session *session, const lc_claim *claim
     snprintf(row->reproduce, sizeof row->reproduce, "%s verify --suite %s -c %s -e %s --scene %s --seed %llu",
              o->program, o->suite->name, row->check, row->estimator, row->scene, (unsigned long long)o->seed);
     row->exact = claim->exact;
+    row->min_bounces = claim->min_bounces;
+    row->max_bounces = claim->max_bounces;
     if (claim->exact)
         return judge_exact(row, session, claim, err);
     lc_estimate *field = malloc(sizeof *field * (size_t)desc->width * (size_t)desc->height);
@@ -318,6 +351,13 @@ lc_status lc_compare_films(lc_row *row, const lc_film *a, const lc_film *b, doub
     snprintf(row->scene, sizeof row->scene, "%s", a->scene[0] ? a->scene : "(unknown)");
     snprintf(row->estimator, sizeof row->estimator, "%s", a->estimator[0] ? a->estimator : "(unknown)");
     snprintf(row->source, sizeof row->source, "the second image");
+    if (result.scale == 0) {
+        row->verdict = LC_ROW_UNDECIDED;
+        row->ratio = row->low = row->high = NAN;
+        snprintf(row->reason, sizeof row->reason,
+                 "both images are exactly black: equal, but without variance nothing is shown");
+        return LC_OK;
+    }
     row->margin = margin;
     row->samples = a->count;
     row->paths = a->count * (uint64_t)a->width * (uint64_t)a->height;

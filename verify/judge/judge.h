@@ -15,6 +15,7 @@
  * over its mean, pooled over the image. It sets margin (margin of the suite times max(1, c)) and samples. */
 typedef struct lc_cell {
     const char *scene, *estimator;
+    int max_bounces; /* from 1 */
     double c;
 } lc_cell;
 
@@ -29,8 +30,8 @@ extern const char *const lc_suite_scenes[]; /* ends with NULL */
 extern const lc_cell lc_cells[];            /* ends with scene = NULL */
 
 const lc_suite *lc_suite_find(const char *name);
-/* c of that cell, or of the cell of the estimator it was made from; NAN when the table does not know it (then a discarded pilot measures it). */
-double lc_cell_noise(const char *scene, const char *estimator);
+/* c of that cell; NAN when the table does not know it (then a discarded pilot measures it). */
+double lc_cell_noise(const char *scene, const char *estimator, int max_bounces);
 /* Samples a pixel that a row plans for, so that hardly any ends undecided: (c z / margin)^2 over the pixels, z = 11. */
 uint64_t lc_planned_samples(double c, double margin, int pixels);
 
@@ -56,6 +57,9 @@ void lc_verify_options_init(lc_verify_options *options);
 /* Fills the report. LC_OK even when rows failed: lc_report_status() tells. Loads scenes through `load`, which owns nothing of them. */
 typedef lc_status lc_load_scene_fn(lc_scene **out, const char *name, lc_error *err);
 lc_status lc_verify(lc_report *report, const lc_verify_options *options, lc_load_scene_fn *load, lc_error *err);
+
+/* Measures c of every cell of all suites, and calls `line` with each as a row of lc_cells: how that table is made. */
+lc_status lc_measure_cells(lc_load_scene_fn *load, void (*line)(void *user, const char *text), void *user, lc_error *err);
 
 /* ---- two images ------------------------------------------------------------------------------------------------ */
 

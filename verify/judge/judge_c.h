@@ -21,6 +21,7 @@ typedef struct lc_stock_film {
 typedef struct lc_stock_values {
     const lc_scene *scene;
     lc_expect_fn *expect;
+    int min_bounces, max_bounces;
     lc_expected expected;
 } lc_stock_values;
 
@@ -44,6 +45,9 @@ lc_status lc_session_film(const lc_film **out, lc_session *session, const lc_sce
 lc_status lc_session_values(const lc_expected **out, lc_session *session, const lc_claim *claim, lc_error *err);
 /* Drops all films and values: the next scene needs none of them. */
 void lc_session_clear(lc_session *session);
+
+/* 1 for the estimators that the program ships. */
+int lc_is_registered(const lc_estimator *estimator);
 
 /* The stream of an estimator in this run. One that is not in the registry never shares a stream with one that is, even under the same name. */
 uint32_t lc_session_arm(const lc_estimator *estimator);

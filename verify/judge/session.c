@@ -6,11 +6,18 @@
 #include "estimators/registry.h"
 #include "verify/judge/judge_c.h"
 
-uint32_t lc_session_arm(const lc_estimator *estimator)
+int lc_is_registered(const lc_estimator *estimator)
 {
     for (const lc_estimator *const *e = lc_estimators; *e; ++e)
         if (*e == estimator)
-            return lc_arm(estimator->name);
+            return 1;
+    return 0;
+}
+
+uint32_t lc_session_arm(const lc_estimator *estimator)
+{
+    if (lc_is_registered(estimator))
+        return lc_arm(estimator->name);
     char name[160];
     snprintf(name, sizeof name, "under test: %s", estimator->name);
     return lc_arm(name);
@@ -88,7 +95,9 @@ static void release_expected(lc_expected *expected)
 lc_status lc_session_values(const lc_expected **out, lc_session *session, const lc_claim *claim, lc_error *err)
 {
     for (int i = 0; i < session->value_count; ++i) {
-        if (session->values[i].scene == claim->scene && session->values[i].expect == claim->expect) {
+        const lc_stock_values *known = &session->values[i];
+        if (known->scene == claim->scene && known->expect == claim->expect &&
+            known->min_bounces == claim->min_bounces && known->max_bounces == claim->max_bounces) {
             *out = &session->values[i].expected;
             return LC_OK;
         }
@@ -107,7 +116,8 @@ lc_status lc_session_values(const lc_expected **out, lc_session *session, const 
         release_expected(&expected);
         return status;
     }
-    values[session->value_count] = (lc_stock_values){claim->scene, claim->expect, expected};
+    values[session->value_count] =
+        (lc_stock_values){claim->scene, claim->expect, claim->min_bounces, claim->max_bounces, expected};
     *out = &values[session->value_count++].expected;
     return LC_OK;
 }

@@ -19,20 +19,12 @@ void lc_verify_options_init(lc_verify_options *options)
     options->program = "build/lightcheck";
 }
 
-static int is_registered(const lc_estimator *estimator)
-{
-    for (const lc_estimator *const *e = lc_estimators; *e; ++e)
-        if (*e == estimator)
-            return 1;
-    return 0;
-}
-
 static lc_status plan_pair(lc_claims *claims, int *not_applicable, const lc_scene *scene, const lc_estimator *estimator,
                            lc_error *err)
 {
     int before = claims->count;
     for (const lc_check *const *c = lc_checks; *c; ++c) {
-        lc_status status = (*c)->plan(*c, claims, scene, estimator, err);
+        lc_status status = (*c)->plan ? (*c)->plan(*c, claims, scene, estimator, err) : LC_OK;
         if (status != LC_OK)
             return status;
     }
@@ -48,13 +40,34 @@ static lc_status plan_scene(lc_claims *claims, int *not_applicable, const lc_ver
         if (status != LC_OK)
             return status;
     }
-    if (o->estimator && !is_registered(o->estimator))
+    if (o->estimator && !lc_is_registered(o->estimator))
         return plan_pair(claims, not_applicable, scene, o->estimator, err);
     return LC_OK;
 }
 
+/* Claims for the full suite only are dropped from the quick one, before rows are counted. */
+static void drop_full_only(lc_claims *claims)
+{
+    int kept = 0;
+    for (int i = 0; i < claims->count; ++i)
+        if (!claims->items[i].full_only)
+            claims->items[kept++] = claims->items[i];
+    claims->count = kept;
+}
+
+static lc_status plan_host(lc_claims *claims, lc_error *err)
+{
+    lc_status status = LC_OK;
+    for (const lc_check *const *c = lc_checks; *c && status == LC_OK; ++c)
+        if ((*c)->plan_host)
+            status = (*c)->plan_host(*c, claims, err);
+    return status;
+}
+
 static int is_selected(const lc_verify_options *o, const lc_claim *claim)
 {
+    if (claim->decide) /* whoever asks about one estimator or one scene does not ask about the host */
+        return !o->estimator && !o->scene && (!o->check || strcmp(o->check, claim->check->name) == 0);
     return (!o->estimator || o->estimator == claim->estimator) &&
            (!o->check || strcmp(o->check, claim->check->name) == 0) &&
            (!o->scene || strcmp(o->scene, lc_scene_description(claim->scene)->name) == 0);
@@ -100,12 +113,15 @@ lc_status lc_verify(lc_report *report, const lc_verify_options *options, lc_load
     report->false_fail = options->false_fail;
     report->false_pass = options->false_pass;
     snprintf(report->suite, sizeof report->suite, "%s", options->suite->name);
+    status = plan_host(&claims, err);
     for (int i = 0; lc_suite_scenes[i] && status == LC_OK; ++i) {
         status = load(&scenes[scene_count], lc_suite_scenes[i], err);
         if (status == LC_OK)
             status = plan_scene(&claims, &report->not_applicable, options, scenes[scene_count++], err);
     }
     if (status == LC_OK) {
+        if (strcmp(options->suite->name, "quick") == 0)
+            drop_full_only(&claims);
         session.rows = claims.count;
         lc_budget budget = {options->false_fail, options->false_pass, session.rows, 3, LC_MOST_LOOKS};
         lc_budget_text(report->budget, sizeof report->budget, &budget, 64, 64);
@@ -115,5 +131,53 @@ lc_status lc_verify(lc_report *report, const lc_verify_options *options, lc_load
     lc_claims_release(&claims);
     for (int i = 0; i < scene_count; ++i)
         lc_scene_free(scenes[i]);
+    return status;
+}
+
+/* One line for each cell that a statistical claim needs; other claims of the same cell repeat it. */
+static lc_status measure_scene(const lc_claims *claims, lc_session *session, void (*line)(void *user, const char *text),
+                               void *user, lc_error *err)
+{
+    for (int i = 0; i < claims->count; ++i) {
+        const lc_claim *claim = &claims->items[i];
+        int known = claim->exact;
+        for (int j = 0; j < i; ++j)
+            known |= claims->items[j].estimator == claim->estimator &&
+                     claims->items[j].max_bounces == claim->max_bounces && !claims->items[j].exact;
+        if (known)
+            continue;
+        const lc_film *film;
+        char text[256];
+        lc_status status = lc_session_film(&film, session, claim->scene, claim->estimator, claim->min_bounces,
+                                           claim->max_bounces, ~lc_session_arm(claim->estimator), 8 * LC_BLOCK, err);
+        if (status != LC_OK)
+            return status;
+        snprintf(text, sizeof text, "    {\"%s\", \"%s\", %d, %.3g},", lc_scene_description(claim->scene)->name,
+                 claim->estimator->name, claim->max_bounces, lc_film_noise(film));
+        line(user, text);
+    }
+    return LC_OK;
+}
+
+lc_status lc_measure_cells(lc_load_scene_fn *load, void (*line)(void *user, const char *text), void *user,
+                           lc_error *err)
+{
+    lc_verify_options options;
+    lc_status status = LC_OK;
+    lc_verify_options_init(&options);
+    for (int i = 0; lc_suite_scenes[i] && status == LC_OK; ++i) {
+        lc_session session = {.options = &options};
+        lc_claims claims = {NULL, 0};
+        lc_scene *scene = NULL;
+        int not_applicable = 0;
+        status = load(&scene, lc_suite_scenes[i], err);
+        if (status == LC_OK)
+            status = plan_scene(&claims, &not_applicable, &options, scene, err);
+        if (status == LC_OK)
+            status = measure_scene(&claims, &session, line, user, err);
+        lc_session_clear(&session);
+        lc_claims_release(&claims);
+        lc_scene_free(scene);
+    }
     return status;
 }

@@ -11,10 +11,11 @@ static json_t *number(double value) { return isfinite(value) ? json_real(value) 
 
 static json_t *row_json(const lc_row *row)
 {
-    json_t *o = json_pack("{s:s, s:s, s:s, s:s, s:b, s:s, s:I, s:I, s:s}", "check", row->check, "scene", row->scene,
-                          "estimator", row->estimator, "verdict", lc_row_verdict_name(row->verdict), "exact",
-                          row->exact, "expected_source", row->source, "samples_per_pixel", (json_int_t)row->samples,
-                          "paths", (json_int_t)row->paths, "reproduce", row->reproduce);
+    json_t *o = json_pack("{s:s, s:s, s:s, s:i, s:i, s:s, s:b, s:s, s:I, s:I, s:s}", "check", row->check, "scene",
+                          row->scene, "estimator", row->estimator, "min_bounces", row->min_bounces, "max_bounces",
+                          row->max_bounces, "verdict", lc_row_verdict_name(row->verdict), "exact", row->exact,
+                          "expected_source", row->source, "samples_per_pixel", (json_int_t)row->samples, "paths",
+                          (json_int_t)row->paths, "reproduce", row->reproduce);
     if (!o)
         return NULL;
     if (!row->exact) {

@@ -14,6 +14,7 @@ typedef enum lc_row_verdict { LC_ROW_PASS, LC_ROW_FAIL, LC_ROW_UNDECIDED } lc_ro
 /* One claim, decided. Relative numbers are in units of the expected mean of reflected light. */
 typedef struct lc_row {
     char check[32], scene[64], estimator[64];
+    int min_bounces, max_bounces; /* the terms L_k that were summed */
     lc_row_verdict verdict;
     int exact;        /* a deterministic claim: no statistics; ratio and interval mean nothing */
     int channel;      /* 0 1 2: the one that was hardest; the numbers below are its */

@@ -9,8 +9,8 @@
 
 void lc_report_text_header(FILE *out)
 {
-    fprintf(out, "%-10s %-18s %-20s %-9s %10s  %-22s %8s %9s\n", "check", "scene", "estimator", "verdict", "estimate",
-            "interval", "margin", "paths");
+    fprintf(out, "%-10s %-18s %-20s %-5s %-9s %10s  %-22s %8s %9s\n", "check", "scene", "estimator", "k", "verdict",
+            "estimate", "interval", "margin", "paths");
 }
 
 /* 4.6M */
@@ -27,6 +27,11 @@ static void format_count(char *text, size_t size, uint64_t count)
 void lc_report_text_row(FILE *out, const lc_row *row)
 {
     char interval[64] = "", margin[16] = "exact", estimate[32] = "", paths[32];
+    char bounces[32];
+    if (row->min_bounces == row->max_bounces)
+        snprintf(bounces, sizeof bounces, "%d", row->min_bounces);
+    else
+        snprintf(bounces, sizeof bounces, "%d-%d", row->min_bounces, row->max_bounces);
     format_count(paths, sizeof paths, row->paths);
     if (!row->exact) {
         snprintf(estimate, sizeof estimate, "%.5f", row->ratio);
@@ -36,7 +41,7 @@ void lc_report_text_row(FILE *out, const lc_row *row)
             snprintf(interval, sizeof interval, "(none yet)");
         snprintf(margin, sizeof margin, "%.2f%%", 100 * row->margin);
     }
-    fprintf(out, "%-10s %-18s %-20s %-9s %10s  %-22s %8s %9s", row->check, row->scene, row->estimator,
+    fprintf(out, "%-10s %-18s %-20s %-5s %-9s %10s  %-22s %8s %9s", row->check, row->scene, row->estimator, bounces,
             lc_row_verdict_name(row->verdict), estimate, interval, margin, paths);
 }
 

@@ -173,7 +173,7 @@ function check_foreign(path) {
     else if (path ~ /^expat/)
         only(of_module("src/io/scene_read"), "expat", "src/io/scene_read*")
     else if (path ~ /^jansson/)
-        only(file ~ /^(verify\/report|verify\/grade|verify\/tests|src\/cli)\//, "jansson", "verify/report, verify/grade, verify/tests and src/cli")
+        only(file ~ /^(verify\/(report|grade|renderers|tests)|src\/cli)\//, "jansson", "verify/report, verify/grade, verify/renderers, verify/tests and src/cli")
     else if (path ~ /^gsl\//)
         only(within(file, "verify/"), "GSL", "verify")
     else if (path ~ /^Random123\//)

@@ -23,6 +23,18 @@ Suite *lc_suite_stats(void);
 Suite *lc_suite_stats_estimate(void);
 Suite *lc_suite_stats_pyramid(void);
 Suite *lc_suite_analytic_direct(void);
+Suite *lc_suite_sampler(void);
+Suite *lc_suite_warp(void);
+Suite *lc_suite_camera(void);
+Suite *lc_suite_accel(void);
+Suite *lc_suite_surface(void);
+Suite *lc_suite_render(void);
+Suite *lc_suite_bsdf(void);
+Suite *lc_suite_energy(void);
+Suite *lc_suite_cli(void);
+Suite *lc_suite_report(void);
+Suite *lc_suite_estimators(void);
 Suite *lc_suite_judge_mutants(void);
+Suite *lc_suite_povray(void);
 
 #endif

@@ -1,0 +1,107 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <stdio.h>
+#include <string.h>
+
+#include "cli/commands.h"
+#include "io/outfile.h"
+#include "verify/renderers/pov_export.h"
+
+typedef struct export_arguments {
+    const char *to, *mode, *size, *out;
+    int emission;
+    lc_pov_options pov;
+    lc_strings definitions;
+} export_arguments;
+
+static lc_pov_mode mode_of(const char *name)
+{
+    return strcmp(name, "radiosity") == 0  ? LC_POV_RADIOSITY
+           : strcmp(name, "specular") == 0 ? LC_POV_SPECULAR
+                                           : LC_POV_DIRECT;
+}
+
+static lc_status write_file(const char *path, const lc_scene_desc *desc, const lc_pov_options *options, lc_error *err)
+{
+    lc_outfile *out;
+    lc_status status = lc_outfile_open(&out, path, err);
+    if (status != LC_OK)
+        return status;
+    status = lc_pov_export(lc_outfile_stream(out), desc, options, err);
+    if (status == LC_OK)
+        return lc_outfile_commit(out, err);
+    lc_outfile_abort(out);
+    return status;
+}
+
+static lc_status export_scene(void *user, const lc_strings *rest, lc_error *err)
+{
+    export_arguments *a = user;
+    const char *scene_name = rest->items[0];
+    lc_scene *scene;
+    lc_scene_desc desc;
+    char default_out[128];
+    if (!a->to)
+        return lc_fail(err, LC_BAD_INPUT, "--to pov says for which program");
+    lc_status status = lc_cli_load_scene(&scene, scene_name, &a->definitions, err);
+    if (status != LC_OK)
+        return status;
+    status = lc_scene_desc_copy(&desc, lc_scene_description(scene), err);
+    lc_scene_free(scene);
+    if (status != LC_OK)
+        return status;
+    a->pov.mode = mode_of(a->mode);
+    a->pov.emission |= a->pov.mode == LC_POV_SPECULAR;
+    if (a->pov.bounces < 0)
+        a->pov.bounces = a->pov.mode == LC_POV_DIRECT ? 1
+                         : desc.max_bounces >= 0      ? desc.max_bounces
+                                                      : LC_DEFAULT_BOUNCES;
+    if (a->size)
+        status = lc_cli_read_pair(&desc.width, &desc.height, a->size, 'x', "--size", err);
+    if (status == LC_OK && (desc.width < 1 || desc.height < 1 || desc.width > LC_MAX_SIZE || desc.height > LC_MAX_SIZE))
+        status =
+            lc_fail(err, LC_BAD_INPUT, "--size %dx%d: expected 1 to %d each", desc.width, desc.height, LC_MAX_SIZE);
+    snprintf(default_out, sizeof default_out, "%s.pov", desc.name);
+    const char *out = a->out ? a->out : default_out;
+    if (status == LC_OK)
+        status = write_file(out, &desc, &a->pov, err);
+    lc_scene_desc_release(&desc);
+    return status;
+}
+
+static int run(const lc_command *self, int argc, char **argv)
+{
+    export_arguments a = {.mode = "direct"};
+    lc_pov_options_init(&a.pov);
+    a.pov.bounces = -1;
+    const lc_option options[] = {
+        {0, "to", LC_OPT_CHOICE, &a.to, "pov", "for which program; needed", 0, 0, "pov"},
+        {'o', "out", LC_OPT_STRING, &a.out, "FILE", "default SCENE.pov", 0, 0, NULL},
+        {0, "mode", LC_OPT_CHOICE, &a.mode, "MODE",
+         "direct (default): one diffuse reflection; radiosity: several; specular: mirrors and glass", 0, 0,
+         "direct|radiosity|specular"},
+        {0, "bounces", LC_OPT_INT, &a.pov.bounces, "N",
+         "scattering events at most; default: 1 with mode direct, else the scene's, else 5", 0, 250, NULL},
+        {0, "points", LC_OPT_INT, &a.pov.area_samples, "N",
+         "point lights along the longest side of any lamp; default 16", 2, 256, NULL},
+        {0, "count", LC_OPT_INT, &a.pov.count, "N", "rays of a gathering of radiosity; default 400", 1, 1600, NULL},
+        {0, "emission", LC_OPT_FLAG, &a.pov.emission, NULL,
+         "the camera sees lamps and sky glow, too; always so with mode specular", 0, 0, NULL},
+        {0, "size", LC_OPT_STRING, &a.size, "WxH", "pixels whose shape the camera has; default: the scene's", 0, 0,
+         NULL},
+        {'D', "define", LC_OPT_LIST, &a.definitions, "NAME=VALUE", "value of a <default> of the scene", 0, 0, NULL},
+        {0, NULL, LC_OPT_FLAG, NULL, NULL, NULL, 0, 0, NULL},
+    };
+    return lc_command_run(self, options, argc, argv, 1, 1,
+                          "expected one scene: a name (see `lightcheck list scenes`) or a path to an .xml file",
+                          export_scene, &a);
+}
+
+const lc_command lc_command_export = {
+    "export",
+    "SCENE --to pov [-o FILE.pov] [options]",
+    "writes a scene for another renderer",
+    "What POV-Ray cannot express, or cannot do right, is refused with the reason (exit status 2); docs/povray.md has "
+    "the\n"
+    "list. Render larger and average blocks for pixel means: POV-Ray samples pixel centres.\n",
+    run,
+};
