@@ -81,7 +81,7 @@ static lc_scene *build_scene(int width, int height)
 static lc_row judge_claim(const setup *s, const lc_scene *scene, const lc_estimator *estimator,
                           const lc_estimator *other, uint64_t seed)
 {
-    static const lc_check check = {"mutants", "", "", NULL};
+    static const lc_check check = {"mutants", "", "", NULL, NULL};
     lc_verify_options options;
     lc_verify_options_init(&options);
     options.false_fail = s->false_fail;
