@@ -186,3 +186,26 @@ lc_args_result lc_args_read(const lc_command *command, const lc_option *options,
     }
     return LC_ARGS_OK;
 }
+
+int lc_command_run(const lc_command *command, const lc_option *options, int argc, char **argv, int least, int most,
+                   const char *expected, lc_command_fn *body, void *user)
+{
+    lc_strings rest;
+    lc_error err = {""};
+    int status = LC_BAD_INPUT;
+    lc_args_result read = lc_args_read(command, options, argc, argv, &rest);
+    if (read == LC_ARGS_HELP)
+        status = LC_OK;
+    else if (read == LC_ARGS_OK && (rest.count < least || rest.count > most))
+        status = lc_complain(command, LC_BAD_INPUT, "%s", expected);
+    else if (read == LC_ARGS_OK) {
+        status = (int)body(user, &rest, &err);
+        if (err.text[0])
+            lc_complain(command, (lc_status)status, "%s", err.text);
+    }
+    for (const lc_option *o = options; o->name; ++o)
+        if (o->kind == LC_OPT_LIST)
+            lc_strings_release(o->target);
+    lc_strings_release(&rest);
+    return status;
+}

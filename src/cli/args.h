@@ -47,6 +47,12 @@ lc_args_result lc_args_read(const lc_command *command, const lc_option *options,
                             lc_strings *rest);
 void lc_strings_release(lc_strings *strings);
 
+/* What a command does once its arguments are read: `user` is its own, `rest` the words that are no options. */
+typedef lc_status lc_command_fn(void *user, const lc_strings *rest, lc_error *err);
+/* Reads the arguments, wants `least` to `most` words besides (else complains with `expected`), calls `body`, prints its error. The exit code. */
+int lc_command_run(const lc_command *command, const lc_option *options, int argc, char **argv, int least, int most,
+                   const char *expected, lc_command_fn *body, void *user);
+
 /* Prints "lightcheck COMMAND: message" to stderr and returns `status`. */
 int lc_complain(const lc_command *command, lc_status status, const char *format, ...)
 #ifdef __GNUC__

@@ -25,8 +25,10 @@ static lc_status read_image(lc_film **out, const char *path, lc_error *err)
     return LC_OK;
 }
 
-static lc_status compare(const char *path_a, const char *path_b, double margin, lc_error *err)
+static lc_status compare(void *user, const lc_strings *rest, lc_error *err)
 {
+    const char *path_a = rest->items[0], *path_b = rest->items[1];
+    double margin = *(double *)user;
     lc_film *a = NULL, *b = NULL;
     lc_row row;
     memset(&row, 0, sizeof row);
@@ -57,21 +59,7 @@ static int run(const lc_command *self, int argc, char **argv)
         {0, "margin", LC_OPT_NUMBER, &margin, "M", "relative to the mean of B; default 0.5%", 0, 10, NULL},
         {0, NULL, LC_OPT_FLAG, NULL, NULL, NULL, 0, 0, NULL},
     };
-    lc_strings rest;
-    lc_error err = {""};
-    int status = LC_BAD_INPUT;
-    lc_args_result read = lc_args_read(self, options, argc, argv, &rest);
-    if (read == LC_ARGS_HELP)
-        status = LC_OK;
-    else if (read == LC_ARGS_OK && rest.count != 2)
-        status = lc_complain(self, LC_BAD_INPUT, "expected two images, A.exr and B.exr");
-    else if (read == LC_ARGS_OK) {
-        status = (int)compare(rest.items[0], rest.items[1], margin, &err);
-        if (err.text[0])
-            lc_complain(self, (lc_status)status, "%s", err.text);
-    }
-    lc_strings_release(&rest);
-    return status;
+    return lc_command_run(self, options, argc, argv, 2, 2, "expected two images, A.exr and B.exr", compare, &margin);
 }
 
 const lc_command lc_command_compare = {

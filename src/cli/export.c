@@ -33,8 +33,10 @@ static lc_status write_file(const char *path, const lc_scene_desc *desc, const l
     return status;
 }
 
-static lc_status export_scene(export_arguments *a, const char *scene_name, lc_error *err)
+static lc_status export_scene(void *user, const lc_strings *rest, lc_error *err)
 {
+    export_arguments *a = user;
+    const char *scene_name = rest->items[0];
     lc_scene *scene;
     lc_scene_desc desc;
     char default_out[128];
@@ -89,23 +91,9 @@ static int run(const lc_command *self, int argc, char **argv)
         {'D', "define", LC_OPT_LIST, &a.definitions, "NAME=VALUE", "value of a <default> of the scene", 0, 0, NULL},
         {0, NULL, LC_OPT_FLAG, NULL, NULL, NULL, 0, 0, NULL},
     };
-    lc_strings rest;
-    lc_error err = {""};
-    int status = LC_BAD_INPUT;
-    lc_args_result read = lc_args_read(self, options, argc, argv, &rest);
-    if (read == LC_ARGS_HELP)
-        status = LC_OK;
-    else if (read == LC_ARGS_OK && rest.count != 1)
-        status = lc_complain(self, LC_BAD_INPUT,
-                             "expected one scene: a name (see `lightcheck list scenes`) or a path to an .xml file");
-    else if (read == LC_ARGS_OK) {
-        status = (int)export_scene(&a, rest.items[0], &err);
-        if (status != LC_OK)
-            lc_complain(self, (lc_status)status, "%s", err.text);
-    }
-    lc_strings_release(&a.definitions);
-    lc_strings_release(&rest);
-    return status;
+    return lc_command_run(self, options, argc, argv, 1, 1,
+                          "expected one scene: a name (see `lightcheck list scenes`) or a path to an .xml file",
+                          export_scene, &a);
 }
 
 const lc_command lc_command_export = {

@@ -10,6 +10,8 @@
 #include "verify/checks/checks.h"
 #include "verify/mutants/registry.h"
 
+#define EXPECTED "expected one of: estimators, scenes, checks, mutants"
+
 /* One item of a list; `detail` is what --json adds under "source". */
 typedef void item_fn(json_t *array, const char *name, const char *summary, const char *source);
 
@@ -64,40 +66,37 @@ static lc_status list_scenes(item_fn *item, json_t *array, lc_error *err)
     return LC_OK;
 }
 
-static int run(const lc_command *self, int argc, char **argv)
+static lc_status list(void *user, const lc_strings *rest, lc_error *err)
 {
-    int json = 0, status = LC_OK;
-    const lc_option options[] = {{0, "json", LC_OPT_FLAG, &json, NULL, "as a JSON array", 0, 0, NULL},
-                                 {0, NULL, LC_OPT_FLAG, NULL, NULL, NULL, 0, 0, NULL}};
-    lc_strings rest;
-    lc_error err;
-    lc_args_result read = lc_args_read(self, options, argc, argv, &rest);
-    if (read != LC_ARGS_OK) {
-        lc_strings_release(&rest);
-        return read == LC_ARGS_HELP ? LC_OK : LC_BAD_INPUT;
-    }
-    const char *what = rest.count == 1 ? rest.items[0] : "";
+    int json = *(int *)user;
+    const char *what = rest->items[0];
     json_t *array = json ? json_array() : NULL;
     item_fn *item = json ? add_item : print_item;
+    lc_status status = LC_OK;
     if (strcmp(what, "estimators") == 0)
         list_estimators(item, array);
     else if (strcmp(what, "checks") == 0)
         list_checks(item, array);
     else if (strcmp(what, "mutants") == 0)
         list_mutants(item, array);
-    else if (strcmp(what, "scenes") == 0) {
-        if (list_scenes(item, array, &err) != LC_OK)
-            status = lc_complain(self, LC_BAD_INPUT, "%s", err.text);
-    } else {
-        status = lc_complain(self, LC_BAD_INPUT, "expected one of: estimators, scenes, checks, mutants");
-    }
+    else if (strcmp(what, "scenes") == 0)
+        status = list_scenes(item, array, err);
+    else
+        status = lc_fail(err, LC_BAD_INPUT, EXPECTED);
     if (json && status == LC_OK) {
         json_dumpf(array, stdout, JSON_INDENT(2));
         putchar('\n');
     }
     json_decref(array);
-    lc_strings_release(&rest);
     return status;
+}
+
+static int run(const lc_command *self, int argc, char **argv)
+{
+    int json = 0;
+    const lc_option options[] = {{0, "json", LC_OPT_FLAG, &json, NULL, "as a JSON array", 0, 0, NULL},
+                                 {0, NULL, LC_OPT_FLAG, NULL, NULL, NULL, 0, 0, NULL}};
+    return lc_command_run(self, options, argc, argv, 1, 1, EXPECTED, list, &json);
 }
 
 const lc_command lc_command_list = {

@@ -4,8 +4,11 @@
 #include "cli/commands.h"
 #include "io/exr.h"
 
-static lc_status merge(const lc_strings *paths, const char *out, lc_error *err)
+static lc_status merge(void *user, const lc_strings *paths, lc_error *err)
 {
+    const char *out = *(const char **)user;
+    if (!out)
+        return lc_fail(err, LC_BAD_INPUT, "-o OUT.exr says where the result goes");
     lc_film *sum = NULL;
     lc_status status = lc_exr_read(&sum, paths->items[0], err);
     for (int i = 1; status == LC_OK && i < paths->count; ++i) {
@@ -34,21 +37,8 @@ static int run(const lc_command *self, int argc, char **argv)
         {'o', "out", LC_OPT_STRING, &out, "OUT.exr", "where the result goes", 0, 0, NULL},
         {0, NULL, LC_OPT_FLAG, NULL, NULL, NULL, 0, 0, NULL},
     };
-    lc_strings rest;
-    lc_error err = {""};
-    int status = LC_BAD_INPUT;
-    lc_args_result read = lc_args_read(self, options, argc, argv, &rest);
-    if (read == LC_ARGS_HELP)
-        status = LC_OK;
-    else if (read == LC_ARGS_OK && (rest.count < 2 || !out))
-        status = lc_complain(self, LC_BAD_INPUT, "expected two or more images and -o OUT.exr");
-    else if (read == LC_ARGS_OK) {
-        status = (int)merge(&rest, out, &err);
-        if (status != LC_OK)
-            lc_complain(self, (lc_status)status, "%s", err.text);
-    }
-    lc_strings_release(&rest);
-    return status;
+    return lc_command_run(self, options, argc, argv, 2, 1 << 20, "expected two or more images and -o OUT.exr", merge,
+                          &out);
 }
 
 const lc_command lc_command_merge = {

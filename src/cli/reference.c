@@ -66,8 +66,9 @@ static int is_asked(const lc_pov_case *c, const lc_strings *names)
     return names->count == 0;
 }
 
-static lc_status render_references(const reference_arguments *a, const lc_strings *names, lc_error *err)
+static lc_status render_references(void *user, const lc_strings *names, lc_error *err)
 {
+    const reference_arguments *a = user;
     int done = 0;
     lc_status status = make_folder(a->folder, err);
     for (const lc_pov_case *c = lc_pov_cases; status == LC_OK && c->scene; ++c) {
@@ -89,19 +90,7 @@ static int run(const lc_command *self, int argc, char **argv)
         {0, "threads", LC_OPT_INT, &a.threads, "N", "of POV-Ray; default: one a core", 1, 64, NULL},
         {0, NULL, LC_OPT_FLAG, NULL, NULL, NULL, 0, 0, NULL},
     };
-    lc_strings rest;
-    lc_error err = {""};
-    int status = LC_BAD_INPUT;
-    lc_args_result read = lc_args_read(self, options, argc, argv, &rest);
-    if (read == LC_ARGS_HELP)
-        status = LC_OK;
-    else if (read == LC_ARGS_OK) {
-        status = (int)render_references(&a, &rest, &err);
-        if (status != LC_OK)
-            lc_complain(self, (lc_status)status, "%s", err.text);
-    }
-    lc_strings_release(&rest);
-    return status;
+    return lc_command_run(self, options, argc, argv, 0, 1 << 20, NULL, render_references, &a);
 }
 
 const lc_command lc_command_reference = {

@@ -69,8 +69,10 @@ static lc_status render_one(const lc_scene *scene, const lc_estimator *estimator
     return status;
 }
 
-static lc_status render(const render_arguments *a, const char *scene_name, lc_error *err)
+static lc_status render(void *user, const lc_strings *rest, lc_error *err)
 {
+    const render_arguments *a = user;
+    const char *scene_name = rest->items[0];
     const lc_estimator *estimator;
     lc_scene *scene = NULL;
     char path[4096], default_out[128];
@@ -137,23 +139,9 @@ static int run(const lc_command *self, int argc, char **argv)
         {'D', "define", LC_OPT_LIST, &a.definitions, "NAME=VALUE", "value of a <default> of the scene", 0, 0, NULL},
         {0, NULL, LC_OPT_FLAG, NULL, NULL, NULL, 0, 0, NULL},
     };
-    lc_strings rest;
-    lc_error err = {""};
-    int status = LC_BAD_INPUT;
-    lc_args_result read = lc_args_read(self, options, argc, argv, &rest);
-    if (read == LC_ARGS_HELP)
-        status = LC_OK;
-    else if (read == LC_ARGS_OK && rest.count != 1)
-        status = lc_complain(self, LC_BAD_INPUT,
-                             "expected one scene: a name (see `lightcheck list scenes`) or a path to an .xml file");
-    else if (read == LC_ARGS_OK) {
-        status = (int)render(&a, rest.items[0], &err);
-        if (status != LC_OK)
-            lc_complain(self, (lc_status)status, "%s", err.text);
-    }
-    lc_strings_release(&a.definitions);
-    lc_strings_release(&rest);
-    return status;
+    return lc_command_run(self, options, argc, argv, 1, 1,
+                          "expected one scene: a name (see `lightcheck list scenes`) or a path to an .xml file", render,
+                          &a);
 }
 
 const lc_command lc_command_render = {

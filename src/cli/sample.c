@@ -10,6 +10,8 @@ typedef struct sample_arguments {
     int bounces, gdb;
     uint64_t index, seed;
     lc_strings definitions;
+    int argc; /* as given, for --gdb */
+    char **argv;
 } sample_arguments;
 
 static void print_line(void *user, const char *text)
@@ -18,8 +20,32 @@ static void print_line(void *user, const char *text)
     printf("  %s\n", text);
 }
 
-static lc_status replay(const sample_arguments *a, const char *scene_name, lc_error *err)
+/* The same command again, under gdb, stopped where the estimator begins. */
+static lc_status debug(const sample_arguments *a, lc_error *err)
 {
+    const char *command[64] = {"gdb", "-q",     "-ex",    "break lc_replay_begin", "-ex", "run",
+                               "-ex", "finish", "--args", "/proc/self/exe"};
+    char exe[4096];
+    int n = 10;
+    ssize_t length = readlink("/proc/self/exe", exe, sizeof exe - 1);
+    if (length > 0) {
+        exe[length] = 0;
+        command[9] = exe;
+    }
+    for (int i = 0; i < a->argc && n < 63; ++i)
+        if (strcmp(a->argv[i], "--gdb") != 0)
+            command[n++] = a->argv[i];
+    command[n] = NULL;
+    execvp("gdb", (char *const *)command);
+    return lc_fail(err, LC_FAULT, "--gdb: cannot run gdb; install the package gdb");
+}
+
+static lc_status replay(void *user, const lc_strings *rest, lc_error *err)
+{
+    const sample_arguments *a = user;
+    const char *scene_name = rest->items[0];
+    if (a->gdb)
+        return debug(a, err);
     const lc_estimator *estimator;
     lc_scene *scene = NULL;
     int width, height, x, y;
@@ -56,29 +82,9 @@ static lc_status replay(const sample_arguments *a, const char *scene_name, lc_er
     return status;
 }
 
-/* The same command again, under gdb, stopped where the estimator begins. */
-static int debug(const lc_command *self, int argc, char **argv)
-{
-    const char *command[64] = {"gdb", "-q",     "-ex",    "break lc_replay_begin", "-ex", "run",
-                               "-ex", "finish", "--args", "/proc/self/exe"};
-    char exe[4096];
-    int n = 10;
-    ssize_t length = readlink("/proc/self/exe", exe, sizeof exe - 1);
-    if (length > 0) {
-        exe[length] = 0;
-        command[9] = exe;
-    }
-    for (int i = 0; i < argc && n < 63; ++i)
-        if (strcmp(argv[i], "--gdb") != 0)
-            command[n++] = argv[i];
-    command[n] = NULL;
-    execvp("gdb", (char *const *)command);
-    return lc_complain(self, LC_FAULT, "--gdb: cannot run gdb; install the package gdb");
-}
-
 static int run(const lc_command *self, int argc, char **argv)
 {
-    sample_arguments a = {.bounces = -1, .seed = LC_DEFAULT_SEED};
+    sample_arguments a = {.bounces = -1, .seed = LC_DEFAULT_SEED, .argc = argc, .argv = argv};
     const lc_option options[] = {
         {'e', "estimator", LC_OPT_STRING, &a.estimator, "NAME", "estimator (see `lightcheck list estimators`)", 0, 0,
          NULL},
@@ -91,25 +97,9 @@ static int run(const lc_command *self, int argc, char **argv)
         {0, "gdb", LC_OPT_FLAG, &a.gdb, NULL, "under gdb, stopped before the estimator is called", 0, 0, NULL},
         {0, NULL, LC_OPT_FLAG, NULL, NULL, NULL, 0, 0, NULL},
     };
-    lc_strings rest;
-    lc_error err = {""};
-    int status = LC_BAD_INPUT;
-    lc_args_result read = lc_args_read(self, options, argc, argv, &rest);
-    if (read == LC_ARGS_HELP)
-        status = LC_OK;
-    else if (read == LC_ARGS_OK && rest.count != 1)
-        status = lc_complain(self, LC_BAD_INPUT,
-                             "expected one scene: a name (see `lightcheck list scenes`) or a path to an .xml file");
-    else if (read == LC_ARGS_OK && a.gdb)
-        status = debug(self, argc, argv);
-    else if (read == LC_ARGS_OK) {
-        status = (int)replay(&a, rest.items[0], &err);
-        if (status != LC_OK)
-            lc_complain(self, (lc_status)status, "%s", err.text);
-    }
-    lc_strings_release(&a.definitions);
-    lc_strings_release(&rest);
-    return status;
+    return lc_command_run(self, options, argc, argv, 1, 1,
+                          "expected one scene: a name (see `lightcheck list scenes`) or a path to an .xml file", replay,
+                          &a);
 }
 
 const lc_command lc_command_sample = {

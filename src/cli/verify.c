@@ -102,8 +102,11 @@ static void print_line(void *user, const char *text)
     printf("%s\n", text);
 }
 
-static lc_status verify(const verify_arguments *a, lc_error *err)
+static lc_status verify(void *user, const lc_strings *rest, lc_error *err)
 {
+    const verify_arguments *a = user;
+    if (rest->count)
+        return lc_fail(err, LC_BAD_INPUT, "unexpected argument '%s'", rest->items[0]);
     lc_verify_options options;
     lc_report report;
     if (a->measure)
@@ -163,21 +166,7 @@ static int run(const lc_command *self, int argc, char **argv)
         {0, "report", LC_OPT_STRING, &a.report, "DIR", "writes all formats there, too", 0, 0, NULL},
         {0, NULL, LC_OPT_FLAG, NULL, NULL, NULL, 0, 0, NULL},
     };
-    lc_strings rest;
-    lc_error err = {""};
-    int status = LC_BAD_INPUT;
-    lc_args_result read = lc_args_read(self, options, argc, argv, &rest);
-    if (read == LC_ARGS_HELP)
-        status = LC_OK;
-    else if (read == LC_ARGS_OK && rest.count != 0)
-        status = lc_complain(self, LC_BAD_INPUT, "unexpected argument '%s'", rest.items[0]);
-    else if (read == LC_ARGS_OK) {
-        status = (int)verify(&a, &err);
-        if (err.text[0])
-            lc_complain(self, (lc_status)status, "%s", err.text);
-    }
-    lc_strings_release(&rest);
-    return status;
+    return lc_command_run(self, options, argc, argv, 0, 1 << 20, NULL, verify, &a);
 }
 
 const lc_command lc_command_verify = {
