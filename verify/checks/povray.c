@@ -12,7 +12,7 @@
 #include "verify/renderers/pov_reference.h"
 
 /* A reference of which more is beyond the band says too little. */
-#define MOST_LEFT_OUT 0.5
+#define MOST_LEFT_OUT 0.6
 
 static const lc_pov_case *find_case(const char *scene, lc_pov_mode mode)
 {
@@ -34,14 +34,22 @@ static lc_status locate(char scene_file[LC_PATH_SIZE], char folder[LC_PATH_SIZE 
     return LC_OK;
 }
 
-/* Only asked where edges are. */
+/* Only asked where edges are: of what is seen, and of what is seen in mirrors. */
 static lc_status outline_view(lc_rgb *value, int *kind, const lc_scene *scene, const lc_hit *hit, void *user,
                               lc_error *err)
 {
-    (void)scene;
+    lc_hit at = *hit;
+    unsigned chain = 0;
     (void)user;
     (void)err;
-    *kind = hit->valid ? 2 * hit->part + (lc_dot(hit->n, hit->wo) > 0) : -1;
+    for (int k = 0; k < 16; ++k) {
+        lc_material material = lc_material_at(scene, &at);
+        chain = 31 * chain + (at.valid ? 2 * (unsigned)at.part + (lc_dot(at.n, at.wo) > 0) + 1 : 0);
+        if (!at.valid || lc_rgb_max(material.mirror) == 0)
+            break;
+        lc_trace(scene, &at, lc_sub(lc_scale(2 * lc_dot(at.n, at.wo), at.n), at.wo), &at);
+    }
+    *kind = (int)(chain & 0x7fffffff);
     if (value)
         *value = lc_black();
     return LC_OK;
@@ -138,7 +146,7 @@ static lc_status plan(const lc_check *self, lc_claims *claims, const lc_scene *s
         claim->tolerance = c->band;
         claim->margin = 2 * c->band;
         claim->source = c->source;
-        claim->may_be_still = lc_scene_emitters(scene) == LC_DIRECTIONAL;
+        claim->may_be_still = c->mode == LC_POV_SPECULAR || lc_scene_emitters(scene) == LC_DIRECTIONAL;
     }
     return LC_OK;
 }

@@ -32,7 +32,8 @@ void lc_pov_image_release(lc_pov_image *image);
 
 /* Renders the case twice, as finely as it says and half as finely in every respect at once (points of a lamp, supersampling, rays of a gathering).
  * The error of a pixel is the largest difference of the two within one pixel around it, plus the rounding of half floats, 2^-11 of its value: both
- * errors fall at least as fast as the spacing, so that the finer image is nearer to the truth than to the coarser one. */
+ * errors fall at least as fast as the spacing, so that the finer image is nearer to the truth than to the coarser one. Mode radiosity: the
+ * difference of the means over the pixel's tile of 8 x 8, since gathering is noisy from pixel to pixel. */
 lc_status lc_pov_measure(lc_pov_image *out, const lc_pov_case *c, const lc_scene_desc *desc, int threads,
                          lc_error *err);
 
