@@ -12,7 +12,7 @@
 
 /* What is asked of POV-Ray, and thereby what it can be asked. */
 typedef enum lc_pov_mode {
-    LC_POV_DIRECT, /* light of one diffuse reflection: lamps become quadratures of points */
+    LC_POV_DIRECT,    /* light of one diffuse reflection: lamps become quadratures of points */
     LC_POV_RADIOSITY, /* and that of up to `bounces` diffuse reflections, gathered: a noisy reference */
     LC_POV_SPECULAR   /* lamps and sky seen by way of mirrors and glass only */
 } lc_pov_mode;

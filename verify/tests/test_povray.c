@@ -506,8 +506,52 @@ START_TEST(altered_scenes_fail)
 }
 END_TEST
 
+START_TEST(pixels_beyond_the_band_are_left_out)
+{
+    char path[LC_PATH_SIZE];
+    lc_scene *scene;
+    lc_claims claims = {NULL, 0};
+    lc_pov_image image;
+    lc_estimator copy = *find_estimator("light_direct");
+    const lc_check *const *check = lc_checks;
+    const lc_pov_case *c = lc_pov_cases;
+    int beyond = 0, outlines = 0;
+    while (strcmp((*check)->name, "povray") != 0)
+        ++check;
+    while (strcmp(c->scene, "cornell") != 0)
+        ++c;
+    alter = NULL;
+    ck_assert_int_eq(load_altered(&scene, "cornell", &err), LC_OK);
+    ck_assert_int_eq((*check)->plan(*check, &claims, scene, &copy, &err), LC_OK);
+    ck_assert_int_eq(claims.count, 1);
+    ck_assert_int_eq(lc_scene_locate(path, "cornell", &err), LC_OK);
+    ck_assert_int_eq(lc_pov_reference_read(&image, "results/reference", path, c, &err), LC_OK);
+    size_t count = (size_t)image.width * (size_t)image.height;
+    lc_expected expected = {image.width, image.height, calloc(3 * count, sizeof(double)), calloc(count, 1)};
+    ck_assert_int_eq(claims.items[0].expect(&expected, &claims.items[0], scene, 2, &err), LC_OK);
+    double mean = 0;
+    for (size_t i = 0; i < 3 * count; ++i)
+        mean += image.rgb[i] / (3.0 * (double)count);
+    for (size_t i = 0; i < count; ++i) {
+        int is_beyond = image.error[i] > c->band * mean;
+        ck_assert(expected.skip[i] || !is_beyond);
+        ck_assert(expected.skip[i] || expected.rgb[3 * i] == image.rgb[3 * i]);
+        beyond += is_beyond;
+        outlines += expected.skip[i] && !is_beyond;
+    }
+    ck_assert_int_gt(beyond, 0);
+    ck_assert_int_gt(outlines, 0);
+    ck_assert_double_eq(lc_pov_share_left_out(&image, c->band), beyond / (double)count);
+    free(expected.rgb);
+    free(expected.skip);
+    lc_pov_image_release(&image);
+    lc_claims_release(&claims);
+    lc_scene_free(scene);
+}
+END_TEST
+
 /* The exporter still writes what the kept images were made from. */
-static const char *const rendered_again[] = {"plane_point", "glass_slab"};
+static const char *const rendered_again[] = {"plane_point", "plane_rectangle"};
 
 START_TEST(kept_images_are_what_povray_makes_today)
 {
@@ -554,6 +598,7 @@ Suite *lc_suite_povray(void)
     tcase_add_test(tc, hash_is_fnv_1a);
     tcase_add_test(tc, references_of_another_scene_or_case_are_refused);
     tcase_add_loop_test(tc, altered_scenes_fail, 0, sizeof alterations / sizeof alterations[0]);
+    tcase_add_test(tc, pixels_beyond_the_band_are_left_out);
     tcase_add_loop_test(tc, kept_images_are_what_povray_makes_today, 0,
                         sizeof rendered_again / sizeof rendered_again[0]);
     suite_add_tcase(suite, tc);
