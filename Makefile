@@ -60,7 +60,7 @@ TEST := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard verify/tests/*.c))
 # The proofs of the judge: programs of their own, two of whose files have a main.
 PROOF := $(patsubst %.c,$(BUILD)/obj/%.o,$(filter-out %/calibrate.c %/power.c,$(wildcard verify/proof/*.c)))
 
-.PHONY: all check verify povray-reference lint asan-check calibrate power judge-mutants needs fresh clean help
+.PHONY: all check verify verify-table pictures povray-reference lint asan-check calibrate power judge-mutants needs fresh clean help
 all: $(BUILD)/lightcheck $(BUILD)/obj/estimators/template.o ## build the program
 
 $(BUILD)/lightcheck: $(CLI) $(LIB)
@@ -86,8 +86,20 @@ FORCE:
 verify: all ## run the harness: every estimator against every check that applies
 	$(BUILD)/lightcheck verify
 
-check: all $(BUILD)/tests ## run the unit and command-line tests
+verify-table: all ## the quick suite once more: results/verify.md
+	$(BUILD)/lightcheck verify > $(BUILD)/verify.txt
+	{ printf '# The quick suite\n\nMade by `make verify-table`. On one class of CPU each run gives the same bits.\n\n'; \
+	    printf '```text\n'; cat $(BUILD)/verify.txt; printf '```\n'; } > results/verify.md
+
+pictures: all ## the pictures of the README: results/cornell_*.png (about three minutes of one core)
+	for p in light_direct=256 three_point=256 hemisphere_direct=2048 path=2048 mirror=2048 dielectric=2048; do \
+	    $(BUILD)/lightcheck render cornell -e $${p%=*} -s $${p#*=} --size 192x192 -o results/cornell_$${p%=*}.png || \
+	    exit; done
+
+check: all $(BUILD)/tests ## run the unit and command-line tests, and the examples of the documents
 	LIGHTCHECK=$(BUILD)/lightcheck $(BUILD)/tests
+	@sh verify/tests/docs_selftest.sh $(BUILD)/lightcheck
+	@sh verify/tests/docs.sh $(BUILD)/lightcheck
 
 povray-reference: all ## render the references of the povray check anew (needs POV-Ray, takes minutes)
 	$(BUILD)/lightcheck reference

@@ -8,7 +8,7 @@ static lc_status merge(void *user, const lc_strings *paths, lc_error *err)
 {
     const char *out = *(const char **)user;
     if (!out)
-        return lc_fail(err, LC_BAD_INPUT, "-o OUT.exr says where the result goes");
+        return lc_fail(err, LC_BAD_INPUT, "expected two or more images and -o OUT.exr");
     lc_film *sum = NULL;
     lc_status status = lc_exr_read(&sum, paths->items[0], err);
     for (int i = 1; status == LC_OK && i < paths->count; ++i) {

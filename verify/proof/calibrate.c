@@ -81,7 +81,7 @@ static void row_trial(void *user, int trial)
     lc_pyramid_plan_init(&plan, lc_budget_row_fail(&budget), lc_budget_row_pass(&budget));
     int top = lc_pyramid_levels(SIDE, SIDE) - 1;
     double shift = 0, tolerance = 0;
-    if (c->at_bound) { /* FAIL would be right, and hide a false PASS: a declared error of the values puts it out of reach */
+    if (c->at_bound) { /* FAIL would be right, and hide a false PASS: a declared error puts it out of reach */
         plan.margin[top] = 6 * sqrt(c->arms) * first_error(c, looks.first);
         shift = trial % 2 ? plan.margin[top] : -plan.margin[top];
         tolerance = 2 * plan.margin[top];
@@ -327,8 +327,8 @@ static lc_status report(FILE *table, int *broken, uint64_t seed, lc_error *err)
         table,
         "\nFalse verdicts of the judge, at levels that can be counted (%.2g) and, below, at those at which it works. "
         "%dx%d\npixels, %d looks at %d 4^k samples, the budget of %.2g split over looks, levels and tiles by the "
-        "judge's "
-        "own functions.\nA rate `holds` when its interval (Clopper and Pearson) contains the level or lies under it.\n"
+        "judge's own functions.\nA rate `holds` when its interval (Clopper and Pearson) contains the level or lies "
+        "under it.\n"
         "Uneven images have pixels 1/16 to 16 times as bright.\n",
         ALPHA, SIDE, SIDE, (int)LOOKS, (int)LC_LEAST_SAMPLES, ALPHA);
     fprintf(table, "\n## False FAIL: nothing is wrong\n\n`Out of reach at the end`: rows whose whole image was still "

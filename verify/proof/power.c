@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  *
- * power: samples a pixel that the judge and other programs' rules need to see a bias, on the same synthetic films and at
- * the same rate of false failures. Writes results/power.md; exit status 4 when it cannot.
+ * power: samples a pixel that the judge and other programs' rules need to see a bias, on the same synthetic films and
+ * at the same rate of false failures. Writes results/power.md; exit status 4 when it cannot.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -223,17 +223,14 @@ static void report_best(FILE *table, result results[SETUPS][4], const setup *set
                     biases[b].name, lc_rules[best].name, r->n99[best], r->n99[rules - 1], ratio,
                     ratio <= 1.2 ? "met" : "**missed**");
         }
-    fprintf(
-        table,
-        "\nWhere it is missed, it is by two decisions of the judge. No level is tested below %d samples a pixel, so "
-        "that "
-        "Student's t\nholds with any mixture of variances: that is a floor, not a factor. And a skewed pixel is tested "
-        "alone only from\n(g z^3 / 2.08)^2 samples on, because without this guard its rate would not be the one "
-        "claimed "
-        "(see the rates above, and the\ncolumn `unguarded` in calibration.md); until then a bias of one pixel shows in "
-        "coarser tiles. Mitsuba's z needs no such\nguard only because it is given the exact variance and the exact "
-        "law.\n",
-        (int)LC_LEAST_SAMPLES);
+    fprintf(table,
+            "\nWhere it is missed, it is by two decisions of the judge. No level is tested below %d samples a pixel,\n"
+            "so that Student's t holds with any mixture of variances: that is a floor, not a factor. And a skewed\n"
+            "tile is tested only from (g z^3 / 2.08)^2 of its samples on, because without this guard its rate would\n"
+            "not be the one claimed (see the rates above, and `unguarded` in calibration.md); until then a bias\n"
+            "shows in coarser tiles. Rules that are ahead there either fail right images too, or are given the\n"
+            "exact variance and law.\n",
+            (int)LC_LEAST_SAMPLES);
 }
 
 static void report_targets(FILE *table, result results[SETUPS][4], int rules)
@@ -267,11 +264,10 @@ static int report(FILE *table, uint64_t seed)
         ++e->rules;
     e->seed = seed;
     fprintf(table,
-            "\nSamples a pixel (and film) after which a rule sees a bias in 90%% and in 99%% of images of 64x64 pixels "
-            "of mean 1, "
-            "on the same\nfilms, each rule at a false-failure rate of %.0e an image unless it says `published`. Sample "
-            "counts "
-            "are powers of 2^(1/8).\n`never`: not with 2^25. The bias is added, in half of the trials subtracted.\n\n"
+            "\nSamples a pixel (and film) after which a rule sees a bias in 90%% and in 99%% of images of 64x64\n"
+            "pixels of mean 1, on the same films, each rule at a false-failure rate of %.0e an image unless it\n"
+            "says `published`. Sample counts are powers of 2^(1/8). `never`: not with 2^25. The bias is added, in\n"
+            "half of the trials subtracted.\n\n"
             "## The rules\n\nWritten anew from their sources, and brought to an equal rate so:\n\n%s",
             ALPHA, lc_rule_notes);
     fprintf(table,

@@ -110,6 +110,7 @@ right src/core/x.c 'void f(void) __attribute__((format(printf, 3, 4)));'
 right src/core/x.c 'void f(void) { lc_exit(1); sink->printf(1); g("\"exit(1)"); }'
 right src/cli/x.c 'void f(void) { printf("x"); exit(1); }'
 right verify/tests/x.c 'void f(void) { printf("x"); abort(); }'
+right verify/proof/x.c 'void f(void) { printf("x"); abort(); }'
 wrong src/core/x.c "char c = '\"'; void f(void) { abort(); }"
 wrong verify/judge/x.c '#define _GNU_SOURCE'
 right verify/grade/x.c '#define _GNU_SOURCE'

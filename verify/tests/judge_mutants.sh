@@ -1,0 +1,123 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# usage: judge_mutants.sh [NAME ...]
+# Judges that are wrong on purpose: each is made by one substitution in a copy of the tree, and some test must fail.
+# Prints mutant and the tests that killed it. Exit status 0: all are dead; 1: one lives, or could not be made.
+set -eu
+cd "$(dirname "$0")/../.."
+suites='judge_mutants stats_estimate stats_pyramid stats film'
+temporary=$(mktemp -d)
+copy=$temporary/tree
+mkdir "$copy"
+trap 'rm -rf "$temporary"' EXIT
+trap 'exit 1' HUP INT TERM
+tar -cf - --exclude=./.git --exclude='./build*' --exclude=./results . | tar -xf - -C "$copy"
+make="make -s -C $copy BUILD=build"
+$make -j2 build/tests
+
+# Runs the suites as they are now; prints the names of those that failed or ran out of time.
+failing() {
+    for suite in $suites; do
+        CK_RUN_SUITE=$suite CK_VERBOSITY=verbose CK_DEFAULT_TIMEOUT=60 "$copy/build/tests" 2>&1 || :
+    done | sed -n 's/^[^:]*:[0-9]*:[FE]:[^:]*:\([a-z0-9_]*\):.*/\1/p' | sort -u | tr '\n' ' '
+}
+before=$(failing)
+if [ -n "$before" ]; then
+    echo "judge_mutants: the right judge fails: $before" >&2
+    exit 1
+fi
+
+# The first four words, and how many more there are.
+shorten() {
+    if [ $# -gt 4 ]; then
+        echo "$1 $2 $3 $4 and $(($# - 4)) more"
+    else
+        echo "$*"
+    fi
+}
+
+made=0 alive=0
+wanted=" $* "
+
+# mutant NAME FILE SED-COMMAND: one wrong judge.
+mutant() {
+    case $wanted in
+    '  ' | *" $1 "*) ;;
+    *) return 0 ;;
+    esac
+    made=$((made + 1))
+    cp -p "$copy/$2" "$temporary/kept"
+    sed "$3" "$temporary/kept" >"$copy/$2"
+    if cmp -s "$temporary/kept" "$copy/$2"; then
+        killers='' verdict='NOT MADE: nothing matches'
+    elif ! $make build/tests >"$temporary/log" 2>&1; then
+        killers='' verdict='NOT MADE: it does not compile'
+    else
+        killers=$(failing)
+        verdict='ALIVE'
+    fi
+    [ -n "$killers" ] || alive=$((alive + 1))
+    printf '| %-34s | %s |\n' "$1" "$(shorten ${killers:-"$verdict"})"
+    cp "$temporary/kept" "$copy/$2" # not -p: newer than its object
+}
+
+estimate=verify/stats/estimate.c pyramid=verify/stats/pyramid.c budget=verify/stats/budget.c
+claim=verify/judge/claim.c render=src/core/render.c
+
+printf '| %-34s | killed by |\n|---|---|\n' mutant
+
+# p values.
+mutant p_inverted $estimate 's/lc_t_log_sf(side == LC_LOW ? -t : t, /lc_t_log_sf(side == LC_LOW ? t : -t, /'
+mutant p_one_for_still_pixels $estimate 's/if (arm->sampled && !(arm->variance > 0 && arm->least >= 2))/if (0)/'
+mutant normal_instead_of_t $estimate 's/double log_p = lc_t_log_sf(\(.*\), s->df) + correction/double log_p = lc_normal_log_sf(\1) + correction/'
+mutant degrees_of_all_samples $estimate 's/s.df = variance \* variance/s.df = pixels * variance * variance/'
+mutant bound_ignored $estimate 's/(s->difference - bound) \/ s->error/s->difference \/ s->error/'
+
+# Variances.
+mutant one_arms_variance_dropped $estimate 's/double variance = e->arm\[0\].variance + e->arm\[1\].variance,/double variance = e->arm[0].variance,/'
+mutant variance_of_a_sample $estimate 's|arm.variance = m->m2 / (n \* (n - 1));|arm.variance = m->m2 / (n - 1);|'
+mutant variance_floor $estimate 's|arm.variance = m->m2 / (n \* (n - 1));|arm.variance = fmax(m->m2 / (n * (n - 1)), 1e-4);|'
+mutant measured_margin_is_exact $pyramid 's/state->plan->relative > 0 ?/0 ?/'
+
+# Heavy tails.
+mutant guard_switched_off verify/stats/estimate.h 's/#define LC_SKEW_LIMIT 2.08/#define LC_SKEW_LIMIT 1e30/'
+mutant guard_of_the_tile_alone $pyramid 's/if (state->plan->guard == LC_GUARD_POOLED)/if (0)/'
+mutant tails_not_corrected $estimate 's/return s->skew\[side\] \* lc_skew_weight(alpha) \/ 3 + log(LC_RESERVE);/return 0;/'
+mutant skewness_of_the_wrong_side $estimate 's/double third = i == 0 ? arm->third : -arm->third;/double third = i == 1 ? arm->third : -arm->third;/'
+mutant skewness_cancels_between_arms $estimate 's/spoil\[LC_LOW\] += fmax(third, 0)/spoil[LC_LOW] += third/'
+mutant sixteen_samples_are_enough verify/stats/estimate.h 's/LC_LEAST_SAMPLES = 256/LC_LEAST_SAMPLES = 16/'
+
+# The pyramid.
+mutant pyramid_stops_early $pyramid 's/^\( *\)judge_tile(state, l, x, y, sum);/\1if (l < state->out->levels - 1) judge_tile(state, l, x, y, sum);/'
+mutant pyramid_without_pixels $pyramid 's/^\( *\)judge_tile(state, l, x, y, sum);/\1if (l > 0) judge_tile(state, l, x, y, sum);/'
+mutant quarter_of_a_tile_lost $pyramid 's/for (int child = 1; child < 4; ++child)/for (int child = 1; child < 3; ++child)/'
+mutant narrow_images_lose_levels $pyramid 's/< width || 1 << (levels - 1) < height/< width \&\& 1 << (levels - 1) < height/'
+mutant tiles_not_paid_for $pyramid 's|plan->alpha_fail / out->levels / tiles|plan->alpha_fail / out->levels|; s/log(2 \* tiles \* out->levels)/log(2.0 * out->levels)/'
+mutant levels_not_paid_for $pyramid 's|plan->alpha_fail / out->levels / tiles|plan->alpha_fail / tiles|; s/log(2 \* tiles \* out->levels)/log(2 * tiles)/'
+mutant one_side_not_paid_for $pyramid 's/log(2 \* tiles \* out->levels)/log(tiles * out->levels)/'
+mutant tolerance_ignored $pyramid 's/double bound = side == LC_LOW ? -s->tolerance : s->tolerance,/double bound = 0,/'
+
+# The budget.
+mutant looks_not_paid_for $budget 's|b->fail / ((double)b->rows \* b->channels \* b->looks)|b->fail / ((double)b->rows * b->channels)|'
+mutant one_look_paid_for $claim 's/session->rows, 3, LC_MOST_LOOKS};/session->rows, 3, 1};/'
+mutant channels_not_paid_for $claim 's/session->rows, 3, LC_MOST_LOOKS};/session->rows, 1, LC_MOST_LOOKS};/'
+mutant pass_not_split_over_looks $budget 's|b->pass / ((double)b->rows \* b->looks)|b->pass / b->rows|'
+mutant last_look_cut $claim 's/for (++looks.count; looks.count > LC_MOST_LOOKS; --looks.count)/if (looks.count > LC_MOST_LOOKS) looks.count = LC_MOST_LOOKS; else/; s/^        looks.first \*= 4;/        ++looks.count;/'
+
+# Verdicts.
+mutant pass_on_overlap $pyramid 's/double t = (margin - fabs(s->difference)) \/ s->error;/double t = (margin + fabs(s->difference)) \/ s->error; if (fabs(s->difference) - state->pass_z * s->error <= margin) return 1;/'
+mutant pass_when_not_shown_different $pyramid 's/else if (declared > 0 && within == declared)/else/'
+mutant pass_at_one_end $pyramid 's/lc_student_log_p(s, LC_HIGH, -margin, alpha) <= log(alpha)/1/; s/margin - fabs(s->difference)/margin - s->difference/'
+mutant pass_at_one_level $pyramid 's/else if (declared > 0 && within == declared)/else if (within > 0)/'
+mutant one_channel_passes_for_all $estimate 's/return a == LC_PASS && b == LC_PASS ? LC_PASS/return a == LC_PASS || b == LC_PASS ? LC_PASS/'
+mutant pass_wins_over_fail $estimate 's/if (a == LC_FAIL || b == LC_FAIL)/if (a == LC_FAIL \&\& b == LC_FAIL)/'
+mutant undecided_is_pass $claim 's/LC_ROW_FAIL : LC_ROW_UNDECIDED;/LC_ROW_FAIL : LC_ROW_PASS;/'
+
+# Samples.
+mutant bad_samples_skipped $render 's/film->bad += bad->count;/(void)0;/'
+mutant bad_samples_of_the_hub_skipped $claim 's/if (film->bad || (other && other->bad))/if (film->bad)/; s/describe_bad(row, film->bad ? film : other,/describe_bad(row, film,/'
+mutant same_stream_twice $estimate 's/if (a->seed == b->seed && a->arm == b->arm/if (0 \&\& a->arm == b->arm/'
+mutant third_moment_not_merged src/core/film.c 's/m->m3 += o->m3 + square/m->m3 += square/'
+
+printf '\n%d wrong judges, %d alive\n' "$made" "$alive"
+[ "$alive" = 0 ] && [ "$made" != 0 ]
