@@ -10,7 +10,7 @@ static Suite *(*const suites[])(void) = {
     lc_suite_stats,    lc_suite_stats_estimate, lc_suite_stats_pyramid, lc_suite_analytic_direct,
     lc_suite_sampler,  lc_suite_warp,           lc_suite_camera,        lc_suite_accel,
     lc_suite_surface,  lc_suite_render,
-    lc_suite_bsdf,     lc_suite_energy,
+    lc_suite_bsdf,     lc_suite_energy,         lc_suite_mutants,
 };
 
 int main(void)

@@ -31,5 +31,6 @@ Suite *lc_suite_surface(void);
 Suite *lc_suite_render(void);
 Suite *lc_suite_bsdf(void);
 Suite *lc_suite_energy(void);
+Suite *lc_suite_mutants(void);
 
 #endif
