@@ -384,7 +384,7 @@ START_TEST(a_full_or_closed_stdout_is_4)
     ck_assert_int_eq(ran.status, FAULT);
     ck_assert_ptr_nonnull(strstr(ran.err, "cannot write to standard output"));
     finish(
-        start((const char *const[]){"verify", "-c", "emission", "--scene", "sky", "--format", "json", NULL}, full, 0));
+        start((const char *const[]){"verify", "-c", "emission", "--scene", "glass_sphere", "--format", "json", NULL}, full, 0));
     ck_assert_int_eq(ran.status, FAULT);
     close(full);
     ck_assert_int_eq(pipe(ends), 0);
@@ -518,13 +518,13 @@ START_TEST(verify_has_formats)
     json_t *row = json_array_get(json_object_get(report, "rows"), 0);
     ck_assert_str_eq(json_string_value(json_object_get(row, "verdict")), "FAIL");
     json_decref(report);
-    run(OK, "verify", "-c", "emission", "--scene", "sky", "--format", "junit");
+    run(OK, "verify", "-c", "emission", "--scene", "glass_sphere", "--format", "junit");
     ck_assert_int_eq(strncmp(ran.out, "<?xml version=\"1.0\"", 19), 0);
-    run(OK, "verify", "-c", "emission", "--scene", "sky", "--report", in_folder("report"));
+    run(OK, "verify", "-c", "emission", "--scene", "glass_sphere", "--report", in_folder("report"));
     ck_assert_int_eq(access(in_folder("report/report.txt"), R_OK), 0);
     ck_assert_int_eq(access(in_folder("report/report.json"), R_OK), 0);
     ck_assert_int_eq(access(in_folder("report/report.xml"), R_OK), 0);
-    run_bad(FAULT, "no/such", "verify", "-c", "emission", "--scene", "sky", "--report", in_folder("no/such"));
+    run_bad(FAULT, "no/such", "verify", "-c", "emission", "--scene", "glass_sphere", "--report", in_folder("no/such"));
 }
 END_TEST
 

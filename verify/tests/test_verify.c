@@ -10,7 +10,6 @@
 #include "io/scene_path.h"
 #include "io/scene_read.h"
 #include "verify/judge/judge.h"
-#include "verify/mutants/registry.h"
 #include "verify/tests/scene_help.h"
 
 enum { SIDE = 16 };
