@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  *
- * povray: against another program, which shares nothing with ours: no ray, no sampling, no formula. POV-Ray's image has an error, which is measured
- * by its convergence; where a pixel's is larger than the scene's band, the pixel is left out, and a difference within the band is none.
+ * povray: against another program, which shares nothing with ours: no ray, no sampling, no formula. POV-Ray's image has
+ * an error, which is measured by its convergence; where a pixel's is larger than the scene's band, the pixel is left
+ * out, and a difference within the band is none.
  */
 #include <stdio.h>
 #include <string.h>
@@ -55,7 +56,7 @@ static lc_status outline_view(lc_rgb *value, int *kind, const lc_scene *scene, c
     return LC_OK;
 }
 
-/* An outline that runs along a row of pixels can deceive two grids alike, all along: outlines are left out in any case. */
+/* An outline that runs along a row of pixels deceives two grids alike, all along: it is left out in any case. */
 static lc_status take(lc_expected *out, const lc_pov_image *image, const lc_pov_case *c, const lc_scene *scene,
                       int threads, lc_error *err)
 {
@@ -128,7 +129,8 @@ static int is_registered(const lc_estimator *estimator)
     return 0;
 }
 
-/* One estimator of ours a scene, and any that is under test. Under test many may follow each other: they meet the kept image. */
+/* One estimator of ours a scene, and any that is under test. Under test many may follow each other: they meet the kept
+ * image. */
 static lc_status plan(const lc_check *self, lc_claims *claims, const lc_scene *scene, const lc_estimator *estimator,
                       lc_error *err)
 {

@@ -47,7 +47,9 @@ static void describe(lc_row *row, const lc_pyramid *p)
                      row->scene, whole, 100 * (row->low - 1), 100 * (row->high - 1), channel_names[row->channel]);
     } else if (row->verdict == LC_ROW_UNDECIDED) {
         const lc_level *image = &p->level[p->levels - 1];
-        const char *why = image->few      ? "too few samples a pixel"
+        const char *why = image->few ? "too few samples a pixel"
+                          : image->still && fabs(row->ratio) < 1e-9
+                              ? "not one of its samples carries light, which may be too rare to be met"
                           : image->still  ? "its samples show no variance, which proves nothing"
                           : image->skewed ? "rare bright samples: the tails are too heavy for this number of samples"
                                           : "the interval is still wider than the margin";
@@ -224,14 +226,16 @@ static lc_status judge_look(look_result *out, const lc_film *film, const lc_film
 }
 
 /* The looks up to the planned samples, and one more in reserve. Where they are more than the budget pays for, the first
- * ones go: without the last the row would end undecided by design. */
-static lc_looks row_looks(uint64_t planned)
+ * ones go: without the last the row would end undecided by design. But none is beyond `most`. */
+static lc_looks row_looks(uint64_t planned, uint64_t most)
 {
-    lc_looks looks = lc_looks_plan(LC_LEAST_SAMPLES, planned);
+    lc_looks looks = lc_looks_plan(LC_LEAST_SAMPLES, planned < most ? planned : most);
     if (looks.first < LC_LEAST_SAMPLES)
         looks.first = LC_LEAST_SAMPLES;
     for (++looks.count; looks.count > LC_MOST_LOOKS; --looks.count)
         looks.first *= 4;
+    while (looks.count > 1 && lc_looks_samples(&looks, looks.count - 1) > most)
+        --looks.count;
     return looks;
 }
 
@@ -251,7 +255,8 @@ static lc_status judge_statistically(lc_row *row, lc_session *session, const lc_
     double room = claim->margin > 0 ? row->margin - claim->tolerance : row->margin;
 
     /* Both arms grow together. */
-    lc_looks looks = row_looks(lc_planned_samples(hypot(c, c_other), room, pixels));
+    uint64_t most = (uint64_t)fmin(session->options->suite->most_samples / pixels, UINT32_MAX);
+    lc_looks looks = row_looks(lc_planned_samples(hypot(c, c_other), room, pixels), most);
     lc_budget budget = {session->options->false_fail, session->options->false_pass, session->rows, 3, LC_MOST_LOOKS};
     lc_pyramid_plan plan;
     lc_pyramid_plan_init(&plan, lc_budget_row_fail(&budget), lc_budget_row_pass(&budget));

@@ -22,7 +22,7 @@ typedef struct lc_cell {
 typedef struct lc_suite {
     const char *name;
     double margin;       /* relative, of a row with c <= 1 */
-    double most_samples; /* cap on the planned samples of all cells together */
+    double most_samples; /* cap on the planned samples of all cells together, and on those of any row: no margin asks for more */
 } lc_suite;
 
 extern const lc_suite lc_suites[];          /* ends with name = NULL */
@@ -32,7 +32,7 @@ extern const lc_cell lc_cells[];            /* ends with scene = NULL */
 const lc_suite *lc_suite_find(const char *name);
 /* c of that cell; NAN when the table does not know it (then a discarded pilot measures it). */
 double lc_cell_noise(const char *scene, const char *estimator, int max_bounces);
-/* Samples a pixel that a row plans for, so that hardly any ends undecided: (c z / margin)^2 over the pixels, z = 11. */
+/* Samples a pixel that a row plans for, so that hardly any ends undecided: (c z / margin)^2 over the pixels, z = 11; at most 2^62. */
 uint64_t lc_planned_samples(double c, double margin, int pixels);
 
 /* ---- a run --------------------------------------------------------------------------------------------------- */

@@ -9,7 +9,7 @@
 
 const lc_suite lc_suites[] = {
     {"quick", 0.005, 6e8},
-    {"full", 0.0025, 3.3e9},
+    {"full", 0.0025, 3.6e9},
     {NULL, 0, 0},
 };
 
@@ -249,5 +249,5 @@ uint64_t lc_planned_samples(double c, double margin, int pixels)
 {
     double ratio = 11.0 * c / margin;
     double samples = ceil(ratio * ratio / pixels);
-    return samples < 1 ? 1 : (uint64_t)samples;
+    return samples < 1 ? 1 : samples < 0x1p62 ? (uint64_t)samples : (uint64_t)1 << 62;
 }

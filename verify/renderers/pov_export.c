@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  *
- * A scene as POV-Ray's: frame, camera, global settings. POV-Ray's world is called left-handed, but only its camera, rotations and cross products
- * know; here every vector of the camera is given and every transformation is a matrix, so our coordinates are its coordinates.
+ * A scene as POV-Ray's: frame, camera, global settings. POV-Ray's world is called left-handed, but only its camera,
+ * rotations and cross products know; here every vector of the camera is given and every transformation is a matrix, so
+ * our coordinates are its coordinates.
  */
 #include "verify/renderers/pov_export.h"
 
@@ -108,7 +109,7 @@ static lc_status check_sky(const lc_pov_writer *w, lc_error *err)
     return LC_OK;
 }
 
-/* ---- writing ------------------------------------------------------------------------------------------------------ */
+/* ---- writing ----------------------------------------------------------------------------------------------------- */
 
 static void write_head(const lc_pov_writer *w)
 {
@@ -158,7 +159,8 @@ static void write_vector(const lc_pov_writer *w, const char *name, lc_vec3 v)
     fprintf(w->out, "    %s <%.15g, %.15g, %.15g>\n", name, v.x, v.y, v.z);
 }
 
-/* A ray of POV-Ray is direction + x right + y up, x and y in [-1/2, 1/2]: the three corners of our image say what these are. */
+/* A ray of POV-Ray is direction + x right + y up, x and y in [-1/2, 1/2]: the three corners of our image say what these
+ * are. */
 static void write_camera(const lc_pov_writer *w)
 {
     const lc_scene_desc *d = w->desc;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  *
- * pov_export.h: a scene description as a scene of POV-Ray 3.7, in SI-like radiance: what POV-Ray writes with +FE is radiance. docs/povray.md
- * tells the recipes and what they are good for.
+ * pov_export.h: a scene description as a scene of POV-Ray 3.7, in SI-like radiance: what POV-Ray writes with +FE is
+ * radiance. docs/povray.md tells the recipes and what they are good for.
  */
 #ifndef LC_POV_EXPORT_H
 #define LC_POV_EXPORT_H
@@ -12,7 +12,7 @@
 
 /* What is asked of POV-Ray, and thereby what it can be asked. */
 typedef enum lc_pov_mode {
-    LC_POV_DIRECT, /* light that one diffuse reflection brings to the camera: lamps become quadratures of point lights */
+    LC_POV_DIRECT,    /* light of one diffuse reflection: lamps become quadratures of points */
     LC_POV_RADIOSITY, /* and that of up to `bounces` diffuse reflections, gathered: a noisy reference */
     LC_POV_SPECULAR   /* lamps and sky seen by way of mirrors and glass only */
 } lc_pov_mode;
@@ -28,8 +28,9 @@ typedef struct lc_pov_options {
 /* direct, 16 points along a side, reflected light only, 1 bounce, 400 rays. */
 void lc_pov_options_init(lc_pov_options *options);
 
-/* Writes the scene, readable and with comments; the same description gives the same bytes. LC_BAD_INPUT, with the reason, for what POV-Ray
- * cannot express or cannot do right, and for options out of range; LC_FAULT when writing fails. Any thread. */
+/* Writes the scene, readable and with comments; the same description gives the same bytes. LC_BAD_INPUT, with the
+ * reason, for what POV-Ray cannot express or cannot do right, and for options out of range; LC_FAULT when writing
+ * fails. Any thread. */
 lc_status lc_pov_export(FILE *out, const lc_scene_desc *desc, const lc_pov_options *options, lc_error *err);
 
 #endif

@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  *
- * Lights for POV-Ray. Its diffuse surface of pigment rho under a light_source of colour C shows rho C cos: C is irradiance over pi.
+ * Lights for POV-Ray. Its diffuse surface of pigment rho under a light_source of colour C shows rho C cos: C is
+ * irradiance over pi.
  *
- * A light_source fades as 2 / (1 + (d / FD)^2), which is 2 FD^2 / d^2 where FD << d. A piece A of a Lambertian lamp of radiance L irradiates
- * L A cos_light cos_surface / d^2, so it is a light_source of colour L A / (2 pi FD^2) times cos_light: a spotlight along the normal of
- * tightness 1, whose edge `radius 90 falloff 90` puts at the horizon.
+ * A light_source fades as 2 / (1 + (d / FD)^2), which is 2 FD^2 / d^2 where FD << d. A piece A of a Lambertian lamp of
+ * radiance L irradiates L A cos_light cos_surface / d^2, so it is a light_source of colour L A / (2 pi FD^2) times
+ * cos_light: a spotlight along the normal of tightness 1, whose edge `radius 90 falloff 90` puts at the horizon.
  *
- * A lamp is a quadrature of such points: Gauss and Legendre's on rectangles; on disks theirs in the square of the radius and equal steps in angle;
- * equal areas on spheres, half of which no point sees. POV-Ray's own area_light will not do: with area_illumination it multiplies the mean of
- * the visibility by the mean of the light without shadows, and what is wanted is the mean of the product (23% too dark for a lamp that the
- * horizon of a surface cuts at a quarter).
+ * A lamp is a quadrature of such points: Gauss and Legendre's on rectangles; on disks theirs in the square of the
+ * radius and equal steps in angle; equal areas on spheres, half of which no point sees. POV-Ray's own area_light will
+ * not do: with area_illumination it multiplies the mean of the visibility by the mean of the light without shadows, and
+ * what is wanted is the mean of the product (23% too dark for a lamp that the horizon of a surface cuts at a quarter).
  */
 #include <gsl/gsl_integration.h>
 
@@ -39,7 +40,7 @@ static int points_along(const lc_pov_writer *w, double length)
     return n < 3 ? 3 : n;
 }
 
-/* ---- writing ------------------------------------------------------------------------------------------------------ */
+/* ---- writing ----------------------------------------------------------------------------------------------------- */
 
 static void print_vector(FILE *out, lc_vec3 v) { fprintf(out, "<%.15g, %.15g, %.15g>", v.x, v.y, v.z); }
 
@@ -199,7 +200,7 @@ static void write_directional(const lc_pov_writer *w, const lc_directional_desc 
             light->line, from.x, from.y, from.z, c.r, c.g, c.b, at.x, at.y, at.z);
 }
 
-/* ---- all of them ---------------------------------------------------------------------------------------------------- */
+/* ---- all of them ------------------------------------------------------------------------------------------------- */
 
 lc_status lc_pov_check_lights(const lc_pov_writer *w, lc_error *err)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  *
- * Shapes for POV-Ray, each the standard one under a matrix, as ours. `texture` is what the front shows and `interior_texture` the back: for flat
- * shapes, too, POV-Ray calls inside what lies behind the normal.
+ * Shapes for POV-Ray, each the standard one under a matrix, as ours. `texture` is what the front shows and
+ * `interior_texture` the back: for flat shapes, too, POV-Ray calls inside what lies behind the normal.
  */
 #include "verify/renderers/pov_export_c.h"
 
@@ -123,7 +123,7 @@ lc_status lc_pov_check_shapes(const lc_pov_writer *w, lc_error *err)
     return check_nesting(w, err);
 }
 
-/* ---- writing ------------------------------------------------------------------------------------------------------ */
+/* ---- writing ----------------------------------------------------------------------------------------------------- */
 
 static void write_color(FILE *out, lc_rgb c) { fprintf(out, "rgb <%.15g, %.15g, %.15g>", c.r, c.g, c.b); }
 

@@ -80,7 +80,7 @@ double lc_pov_share_left_out(const lc_pov_image *image, double band)
     return (double)out / (double)count;
 }
 
-/* ---- rendering ---------------------------------------------------------------------------------------------------- */
+/* ---- rendering --------------------------------------------------------------------------------------------------- */
 
 /* Largest difference of a pixel's channels. */
 static double difference(const lc_pov_image *fine, const double *coarse, size_t i)
@@ -101,7 +101,8 @@ static double difference_around(const lc_pov_image *fine, const double *coarse, 
     return most;
 }
 
-/* Of the means over the tile of 8 x 8 pixels: what is gathered by chance differs from pixel to pixel, but that averages out. */
+/* Of the means over the tile of 8 x 8 pixels: what is gathered by chance differs from pixel to pixel, but that averages
+ * out. */
 static double difference_of_tile(const lc_pov_image *fine, const double *coarse, int x, int y)
 {
     double sum[3] = {0, 0, 0};
@@ -165,7 +166,7 @@ lc_status lc_pov_measure(lc_pov_image *out, const lc_pov_case *c, const lc_scene
     return status;
 }
 
-/* ---- files -------------------------------------------------------------------------------------------------------- */
+/* ---- files ------------------------------------------------------------------------------------------------------- */
 
 uint64_t lc_pov_hash(const void *bytes, size_t length)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  *
- * pov_reference.h: images by POV-Ray with the error of each pixel, rendered now or read from results/reference/. docs/povray.md tells where the
- * bands come from.
+ * pov_reference.h: images by POV-Ray with the error of each pixel, rendered now or read from results/reference/.
+ * docs/povray.md tells where the bands come from.
  */
 #ifndef LC_POV_REFERENCE_H
 #define LC_POV_REFERENCE_H
@@ -30,22 +30,25 @@ typedef struct lc_pov_image {
 
 void lc_pov_image_release(lc_pov_image *image);
 
-/* Renders the case twice, as finely as it says and half as finely in every respect at once (points of a lamp, supersampling, rays of a gathering).
- * The error of a pixel is the largest difference of the two within one pixel around it, plus the rounding of half floats, 2^-11 of its value: both
- * errors fall at least as fast as the spacing, so that the finer image is nearer to the truth than to the coarser one. Mode radiosity: the
- * difference of the means over the pixel's tile of 8 x 8, since gathering is noisy from pixel to pixel. */
+/* Renders the case twice, as finely as it says and half as finely in every respect at once (points of a lamp,
+ * supersampling, rays of a gathering). The error of a pixel is the largest difference of the two within one pixel
+ * around it, plus the rounding of half floats, 2^-11 of its value: both errors fall at least as fast as the spacing, so
+ * that the finer image is nearer to the truth than to the coarser one. Mode radiosity: the difference of the means over
+ * the pixel's tile of 8 x 8, since gathering is noisy from pixel to pixel. */
 lc_status lc_pov_measure(lc_pov_image *out, const lc_pov_case *c, const lc_scene_desc *desc, int threads,
                          lc_error *err);
 
-/* FNV-1a, 64 bits, of bytes (Fowler, Noll, Vo; draft-eastlake-fnv): tells an edited file from the one that was rendered, not a forged one. */
+/* FNV-1a, 64 bits, of bytes (Fowler, Noll, Vo; draft-eastlake-fnv): tells an edited file from the one that was
+ * rendered, not a forged one. */
 uint64_t lc_pov_hash(const void *bytes, size_t length);
 
-/* Writes FOLDER/NAME.exr (R G B; the error as standard deviation, squared, in variance.*) and NAME.json (version, options, hash of the scene's file,
- * convergence). NAME is "SCENE.pov", with ".radiosity" or ".specular" before ".pov" for those modes. `scene_file` is hashed. */
+/* Writes FOLDER/NAME.exr (R G B; the error as standard deviation, squared, in variance.*) and NAME.json (version,
+ * options, hash of the scene's file, convergence). NAME is "SCENE.pov", with ".radiosity" or ".specular" before ".pov"
+ * for those modes. `scene_file` is hashed. */
 lc_status lc_pov_reference_write(const char *folder, const char *scene_file, const lc_pov_case *c,
                                  const lc_pov_image *image, lc_error *err);
-/* Reads it back. LC_WRONG, with the reason, when it is missing, was rendered from another scene's file, or as another case: a missing reference
- * is a failure. */
+/* Reads it back. LC_WRONG, with the reason, when it is missing, was rendered from another scene's file, or as another
+ * case: a missing reference is a failure. */
 lc_status lc_pov_reference_read(lc_pov_image *out, const char *folder, const char *scene_file, const lc_pov_case *c,
                                 lc_error *err);
 

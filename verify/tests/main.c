@@ -9,16 +9,9 @@ static Suite *(*const suites[])(void) = {
     lc_suite_analytic, lc_suite_outfile,        lc_suite_exr,           lc_suite_png,
     lc_suite_stats,    lc_suite_stats_estimate, lc_suite_stats_pyramid, lc_suite_analytic_direct,
     lc_suite_sampler,  lc_suite_warp,           lc_suite_camera,        lc_suite_accel,
-    lc_suite_surface,  lc_suite_render,
-    lc_suite_bsdf,     lc_suite_energy,
-    lc_suite_affine,     lc_suite_scene_read,     lc_suite_status,        lc_suite_film,
-    lc_suite_analytic,   lc_suite_outfile,        lc_suite_exr,           lc_suite_png,
-    lc_suite_stats,      lc_suite_stats_estimate, lc_suite_stats_pyramid, lc_suite_analytic_direct,
-    lc_suite_sampler,    lc_suite_warp,           lc_suite_camera,        lc_suite_accel,
-    lc_suite_surface,    lc_suite_render,         lc_suite_cli,           lc_suite_report,
-    lc_suite_estimators,
-    lc_suite_judge_mutants,
-    lc_suite_povray,
+    lc_suite_surface,  lc_suite_render,         lc_suite_bsdf,          lc_suite_energy,
+    lc_suite_cli,      lc_suite_report,         lc_suite_estimators,    lc_suite_judge_mutants,
+    lc_suite_povray,   lc_suite_verify,
 };
 
 int main(void)

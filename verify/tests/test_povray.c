@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  *
- * POV-Ray: what is written for it, what it makes of that, and that a wrong scene is found by its images. Tests that need the program pass where
- * there is none; the kept images are tested everywhere.
+ * POV-Ray: what is written for it, what it makes of that, and that a wrong scene is found by its images. Tests that
+ * need the program pass where there is none; the kept images are tested everywhere.
  */
 #include "verify/tests/tests.h"
 
@@ -52,7 +52,7 @@ static lc_status export_text(char **text, const lc_scene_desc *desc, const lc_po
     return status;
 }
 
-/* ---- text --------------------------------------------------------------------------------------------------------- */
+/* ---- text -------------------------------------------------------------------------------------------------------- */
 
 START_TEST(export_says_what_each_part_is)
 {
@@ -143,7 +143,7 @@ START_TEST(clips_are_refused_only_where_they_cut)
 }
 END_TEST
 
-/* ---- what POV-Ray sees, against what we see, at the centres of the pixels ------------------------------------------- */
+/* ---- what POV-Ray sees, against what we see, at the centres of the pixels ---------------------------------------- */
 
 static lc_affine map(double sx, double sy, double sz, double angle, lc_vec3 axis, lc_vec3 at)
 {
@@ -268,7 +268,7 @@ START_TEST(checkerboards_lie_where_ours_do)
 }
 END_TEST
 
-/* ---- specular chains, in closed form ---------------------------------------------------------------------------------- */
+/* ---- specular chains, in closed form ----------------------------------------------------------------------------- */
 
 /* T_m = (1 - R)^2 sum_{j <= m/2} R^(2 j) with R = .04; and a L + a b a L when the second mirror glows. */
 static const struct {
@@ -307,7 +307,7 @@ START_TEST(specular_chains_end_at_the_bounces_asked_for)
 }
 END_TEST
 
-/* ---- the program -------------------------------------------------------------------------------------------------------- */
+/* ---- the program ------------------------------------------------------------------------------------------------- */
 
 START_TEST(a_scene_that_povray_refuses_is_a_fault_in_its_words)
 {
@@ -348,7 +348,7 @@ START_TEST(without_povray_there_is_no_version)
 }
 END_TEST
 
-/* ---- kept images --------------------------------------------------------------------------------------------------------- */
+/* ---- kept images ------------------------------------------------------------------------------------------------- */
 
 START_TEST(hash_is_fnv_1a)
 {
@@ -404,7 +404,7 @@ START_TEST(references_of_another_scene_or_case_are_refused)
 }
 END_TEST
 
-/* ---- altered scenes are found -------------------------------------------------------------------------------------------- */
+/* ---- altered scenes are found ------------------------------------------------------------------------------------ */
 
 static const char *altered_scene;
 static void (*alter)(lc_scene_desc *desc);
@@ -451,26 +451,45 @@ static void move_box(lc_scene_desc *desc)
         }
 }
 
+/* Beyond the margin of gathered light, which is 3%. */
+static void brighten_room(lc_scene_desc *desc)
+{
+    for (int i = 0; i < desc->shape_count; ++i)
+        desc->shapes[i].radiance.color[0] = lc_rgb_scale(1.05, desc->shapes[i].radiance.color[0]);
+}
+
 static const struct {
-    const char *scene;
+    const char *scene, *estimator;
     void (*alter)(lc_scene_desc *desc);
     lc_row_verdict verdict;
 } alterations[] = {
-    {"plane_rectangle", NULL, LC_ROW_PASS},   {"plane_rectangle", brighten_lamp, LC_ROW_FAIL},
-    {"cornell", NULL, LC_ROW_PASS},           {"cornell", brighten_lamp, LC_ROW_FAIL},
-    {"cornell", move_box, LC_ROW_FAIL},       {"plane_point", brighten_point, LC_ROW_FAIL},
-    {"plane_directional", NULL, LC_ROW_PASS}, {"plane_directional", brighten_sun, LC_ROW_FAIL},
+    {"plane_rectangle", "light_direct", NULL, LC_ROW_PASS},
+    {"plane_rectangle", "light_direct", brighten_lamp, LC_ROW_FAIL},
+    {"cornell", "light_direct", NULL, LC_ROW_PASS},
+    {"cornell", "light_direct", brighten_lamp, LC_ROW_FAIL},
+    {"cornell", "light_direct", move_box, LC_ROW_FAIL},
+    {"plane_point", "light_direct", brighten_point, LC_ROW_FAIL},
+    {"plane_directional", "light_direct", NULL, LC_ROW_PASS},
+    {"plane_directional", "light_direct", brighten_sun, LC_ROW_FAIL},
+    {"mirror_corridor", "mirror", NULL, LC_ROW_PASS},
+    {"mirror_corridor", "mirror", brighten_lamp, LC_ROW_FAIL},
+    {"glass_slab", "dielectric", brighten_lamp, LC_ROW_FAIL},
+    {"bright_room", "path", brighten_room, LC_ROW_FAIL},
 };
 
-/* light_direct under another name is held against the kept images. */
+static const lc_estimator *find_estimator(const char *name)
+{
+    for (const lc_estimator *const *e = lc_estimators; *e; ++e)
+        if (strcmp((*e)->name, name) == 0)
+            return *e;
+    ck_abort_msg("no estimator %s", name);
+    return NULL;
+}
+
+/* A right estimator under another name is held against the kept images. */
 START_TEST(altered_scenes_fail)
 {
-    const lc_estimator *light_direct = NULL;
-    for (const lc_estimator *const *e = lc_estimators; *e; ++e)
-        if (strcmp((*e)->name, "light_direct") == 0)
-            light_direct = *e;
-    ck_assert_ptr_nonnull(light_direct);
-    lc_estimator copy = *light_direct;
+    lc_estimator copy = *find_estimator(alterations[_i].estimator);
     lc_verify_options options;
     lc_report report;
     copy.name = "copy";
@@ -484,6 +503,76 @@ START_TEST(altered_scenes_fail)
     ck_assert_int_eq(report.count, 1);
     ck_assert_msg(report.rows[0].verdict == alterations[_i].verdict, "%s", report.rows[0].reason);
     lc_report_release(&report);
+}
+END_TEST
+
+START_TEST(pixels_beyond_the_band_are_left_out)
+{
+    char path[LC_PATH_SIZE];
+    lc_scene *scene;
+    lc_claims claims = {NULL, 0};
+    lc_pov_image image;
+    lc_estimator copy = *find_estimator("light_direct");
+    const lc_check *const *check = lc_checks;
+    const lc_pov_case *c = lc_pov_cases;
+    int beyond = 0, outlines = 0;
+    while (strcmp((*check)->name, "povray") != 0)
+        ++check;
+    while (strcmp(c->scene, "cornell") != 0)
+        ++c;
+    alter = NULL;
+    ck_assert_int_eq(load_altered(&scene, "cornell", &err), LC_OK);
+    ck_assert_int_eq((*check)->plan(*check, &claims, scene, &copy, &err), LC_OK);
+    ck_assert_int_eq(claims.count, 1);
+    ck_assert_int_eq(lc_scene_locate(path, "cornell", &err), LC_OK);
+    ck_assert_int_eq(lc_pov_reference_read(&image, "results/reference", path, c, &err), LC_OK);
+    size_t count = (size_t)image.width * (size_t)image.height;
+    lc_expected expected = {image.width, image.height, calloc(3 * count, sizeof(double)), calloc(count, 1)};
+    ck_assert_int_eq(claims.items[0].expect(&expected, &claims.items[0], scene, 2, &err), LC_OK);
+    double mean = 0;
+    for (size_t i = 0; i < 3 * count; ++i)
+        mean += image.rgb[i] / (3.0 * (double)count);
+    for (size_t i = 0; i < count; ++i) {
+        int is_beyond = image.error[i] > c->band * mean;
+        ck_assert(expected.skip[i] || !is_beyond);
+        ck_assert(expected.skip[i] || expected.rgb[3 * i] == image.rgb[3 * i]);
+        beyond += is_beyond;
+        outlines += expected.skip[i] && !is_beyond;
+    }
+    ck_assert_int_gt(beyond, 0);
+    ck_assert_int_gt(outlines, 0);
+    ck_assert_double_eq(lc_pov_share_left_out(&image, c->band), beyond / (double)count);
+    free(expected.rgb);
+    free(expected.skip);
+    lc_pov_image_release(&image);
+    lc_claims_release(&claims);
+    lc_scene_free(scene);
+}
+END_TEST
+
+/* The exporter still writes what the kept images were made from. */
+static const char *const rendered_again[] = {"plane_point", "plane_rectangle"};
+
+START_TEST(kept_images_are_what_povray_makes_today)
+{
+    char path[LC_PATH_SIZE];
+    lc_scene_desc desc;
+    lc_pov_image now, kept;
+    const lc_pov_case *c = lc_pov_cases;
+    if (!has_povray())
+        return;
+    while (strcmp(c->scene, rendered_again[_i]) != 0)
+        ++c;
+    ck_assert_int_eq(lc_scene_locate(path, c->scene, &err), LC_OK);
+    ck_assert_int_eq(lc_scene_read(&desc, path, NULL, 0, &err), LC_OK);
+    ck_assert_msg(lc_pov_reference_read(&kept, "results/reference", path, c, &err) == LC_OK, "%s", err.text);
+    ck_assert_msg(lc_pov_measure(&now, c, &desc, 2, &err) == LC_OK, "%s", err.text);
+    ck_assert_int_eq(now.width * now.height, kept.width * kept.height);
+    for (int i = 0; i < 3 * now.width * now.height; ++i) /* another machine may round a half the other way */
+        ck_assert_double_le(fabs(now.rgb[i] - kept.rgb[i]), 0x1p-11 * kept.rgb[i]);
+    lc_pov_image_release(&now);
+    lc_pov_image_release(&kept);
+    lc_scene_desc_release(&desc);
 }
 END_TEST
 
@@ -509,6 +598,9 @@ Suite *lc_suite_povray(void)
     tcase_add_test(tc, hash_is_fnv_1a);
     tcase_add_test(tc, references_of_another_scene_or_case_are_refused);
     tcase_add_loop_test(tc, altered_scenes_fail, 0, sizeof alterations / sizeof alterations[0]);
+    tcase_add_test(tc, pixels_beyond_the_band_are_left_out);
+    tcase_add_loop_test(tc, kept_images_are_what_povray_makes_today, 0,
+                        sizeof rendered_again / sizeof rendered_again[0]);
     suite_add_tcase(suite, tc);
     return suite;
 }

@@ -36,5 +36,6 @@ Suite *lc_suite_report(void);
 Suite *lc_suite_estimators(void);
 Suite *lc_suite_judge_mutants(void);
 Suite *lc_suite_povray(void);
+Suite *lc_suite_verify(void);
 
 #endif

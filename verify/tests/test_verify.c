@@ -1,0 +1,384 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Whole runs of the harness, at 16x16 pixels: the wrong is found and named, the right is not called wrong, and a row is the same row
+ * wherever it stands. */
+#include "verify/tests/tests.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "estimators/registry.h"
+#include "io/scene_path.h"
+#include "io/scene_read.h"
+#include "verify/judge/judge.h"
+#include "verify/mutants/registry.h"
+#include "verify/tests/scene_help.h"
+
+enum { SIDE = 16 };
+
+static lc_status load_small(lc_scene **out, const char *name, lc_error *err)
+{
+    char path[LC_PATH_SIZE];
+    lc_scene_desc desc;
+    lc_status status = lc_scene_locate(path, name, err);
+    if (status == LC_OK)
+        status = lc_scene_read(&desc, path, NULL, 0, err);
+    if (status != LC_OK)
+        return status;
+    desc.width = desc.height = SIDE;
+    status = lc_scene_build(out, &desc, err);
+    lc_scene_desc_release(&desc);
+    return status;
+}
+
+/* The quick suite, but no row may take more than 4096 samples a pixel. */
+static const lc_suite tiny = {"quick", 0.005, 4096.0 * SIDE *SIDE};
+
+static lc_report verify_suite(const lc_suite *suite, const lc_estimator *estimator, const char *check,
+                              const char *scene, double margin, uint64_t seed)
+{
+    lc_verify_options options;
+    lc_report report;
+    lc_error err = {""};
+    lc_verify_options_init(&options);
+    options.suite = suite;
+    options.estimator = estimator;
+    options.check = check;
+    options.scene = scene;
+    options.margin = margin;
+    options.seed = seed;
+    ck_assert_msg(lc_verify(&report, &options, load_small, &err) == LC_OK, "%s", err.text);
+    return report;
+}
+
+static lc_report verify(const lc_estimator *estimator, const char *check, const char *scene, double margin,
+                        uint64_t seed)
+{
+    return verify_suite(lc_suite_find("quick"), estimator, check, scene, margin, seed);
+}
+
+static const lc_estimator *find(const char *name)
+{
+    for (const lc_estimator *const *e = lc_estimators; *e; ++e)
+        if (strcmp((*e)->name, name) == 0)
+            return *e;
+    ck_abort_msg("no estimator %s", name);
+    return NULL;
+}
+
+/* ---- right and wrong --------------------------------------------------------------------------------------------- */
+
+/* POV-Ray's images are of 64x64 pixels: here its rows fail for that alone, and show nothing. */
+static int counts(const lc_row *row) { return strcmp(row->check, "povray") != 0; }
+
+static int has_verdict(const lc_report *report, lc_row_verdict verdict)
+{
+    int count = 0;
+    for (int i = 0; i < report->count; ++i)
+        count += counts(&report->rows[i]) && report->rows[i].verdict == verdict;
+    return count;
+}
+
+/* At a wide margin, and without the scenes whose expected values take long. */
+START_TEST(right_estimators_are_not_called_wrong)
+{
+    static const char *const left_out[] = {"occluder",      "cornell",     "plane_disk",      "plane_rectangle",
+                                           "textured_lamp", "five_lights", "furnace_checker", "plane_cube"};
+    int passed = 0, rows = 0;
+    for (const char *const *scene = lc_suite_scenes; *scene; ++scene) {
+        int skip = 0;
+        for (size_t i = 0; i < sizeof left_out / sizeof left_out[0]; ++i)
+            skip |= strcmp(*scene, left_out[i]) == 0;
+        if (skip)
+            continue;
+        lc_report report = verify(NULL, NULL, *scene, 0.25, 1);
+        for (int i = 0; i < report.count; ++i)
+            ck_assert_msg(!counts(&report.rows[i]) || report.rows[i].verdict != LC_ROW_FAIL, "%s: %s",
+                          report.rows[i].check, report.rows[i].reason);
+        passed += has_verdict(&report, LC_ROW_PASS);
+        rows += report.count;
+        lc_report_release(&report);
+    }
+    ck_assert_msg(passed > rows * 3 / 4, "only %d of %d rows passed", passed, rows);
+    ck_assert_int_ge(rows, 60);
+}
+END_TEST
+
+/* Where mutants die, the cheapest rows first; then all that the suite has. */
+static const struct {
+    const char *check, *scene;
+} first_rows[] = {{NULL, "plane_point"}, {NULL, "light_behind"}, {"equality", "occluder"},
+                  {NULL, "sky"},         {NULL, "two_lights"},   {"equality", "five_lights"}};
+
+static int finds(const lc_estimator *mutant, const char *check, const char *scene)
+{
+    lc_report report = verify(mutant, check, scene, 0, 1);
+    int found = has_verdict(&report, LC_ROW_FAIL);
+    for (int i = 0; i < report.count; ++i)
+        ck_assert_str_eq(report.rows[i].estimator, mutant->name);
+    lc_report_release(&report);
+    return found;
+}
+
+START_TEST(every_mutant_is_found)
+{
+    for (const lc_mutant *m = lc_mutants; m->estimator; ++m) {
+        int found = 0;
+        for (size_t i = 0; !found && i < sizeof first_rows / sizeof first_rows[0]; ++i)
+            found = finds(m->estimator, first_rows[i].check, first_rows[i].scene);
+        for (int i = 0; !found && lc_suite_scenes[i]; ++i)
+            found = finds(m->estimator, NULL, lc_suite_scenes[i]);
+        ck_assert_msg(found, "%s lives: %s", m->estimator->name, m->estimator->summary);
+    }
+}
+END_TEST
+
+static lc_rgb two_percent_more(const lc_scene *scene, const lc_ray *ray, const lc_hit *hit, const lc_options *options,
+                               lc_sampler *sampler)
+{
+    return lc_rgb_scale(1.02, find("light_direct")->radiance(scene, ray, hit, options, sampler));
+}
+
+static lc_rgb black(const lc_scene *scene, const lc_ray *ray, const lc_hit *hit, const lc_options *options,
+                    lc_sampler *sampler)
+{
+    (void)scene, (void)ray, (void)hit, (void)options, (void)sampler;
+    return lc_black();
+}
+
+/* One bad sample in the whole run. */
+static lc_rgb nan_once(const lc_scene *scene, const lc_ray *ray, const lc_hit *hit, const lc_options *options,
+                       lc_sampler *sampler)
+{
+    if (sampler->pixel == 7 * SIDE + 3 && sampler->sample == 41 && options->max_bounces == 1)
+        return lc_color(1, NAN, 1);
+    return find("light_direct")->radiance(scene, ray, hit, options, sampler);
+}
+
+static lc_estimator disguise(const char *name, lc_radiance_fn *radiance)
+{
+    lc_estimator e = *find("light_direct");
+    e.name = name;
+    e.radiance = radiance;
+    return e;
+}
+
+START_TEST(two_percent_more_is_found_and_named)
+{
+    lc_estimator e = disguise("mine", two_percent_more);
+    lc_report report = verify(&e, "analytic", "plane_rectangle", 0, 1);
+    ck_assert_int_eq(report.count, 1);
+    const lc_row *row = &report.rows[0];
+    ck_assert_int_eq(row->verdict, LC_ROW_FAIL);
+    ck_assert_double_eq_tol(row->ratio, 1.02, 0.005);
+    ck_assert(row->low > 1 && row->low < 1.02 && row->high > 1.015);
+    ck_assert_msg(strstr(row->reason, "mine on plane_rectangle is wrong"), "%s", row->reason);
+    ck_assert_msg(strstr(row->reason, "+2") || strstr(row->reason, "+1.9"), "%s", row->reason);
+    ck_assert_msg(strstr(row->reproduce, "-c analytic -e mine --scene plane_rectangle --seed 1"), "%s", row->reproduce);
+    ck_assert_int_eq(lc_report_status(&report), LC_WRONG);
+    lc_report_release(&report);
+}
+END_TEST
+
+START_TEST(one_nan_is_found_and_placed)
+{
+    lc_estimator e = disguise("mine", nan_once);
+    lc_report report = verify(&e, "analytic", "plane_rectangle", 0, 5);
+    ck_assert_int_eq(report.count, 1);
+    ck_assert_int_eq(report.rows[0].verdict, LC_ROW_FAIL);
+    ck_assert_msg(strstr(report.rows[0].reason, "1 samples are NaN") != NULL, "%s", report.rows[0].reason);
+    ck_assert_msg(strstr(report.rows[0].reason, "at pixel 3,7 sample 41 seed 5") != NULL, "%s", report.rows[0].reason);
+    lc_report_release(&report);
+}
+END_TEST
+
+/* Without variance there is no test, and light may be too rare to be met: undecided, but never a pass; and wrong where the scene says
+ * that nothing is left to chance. */
+START_TEST(black_does_not_pass_where_there_is_light)
+{
+    static const char *const by_chance[] = {"plane_point", "plane_rectangle"}, *const surely[] = {"plane_directional",
+                                                                                                  "furnace_sphere"};
+    lc_estimator e = disguise("mine", black);
+    for (int i = 0; i < 2; ++i) {
+        lc_report report = verify(&e, "analytic", by_chance[i], 0, 1);
+        ck_assert_int_eq(report.count, 1);
+        ck_assert_int_eq(report.rows[0].verdict, LC_ROW_UNDECIDED);
+        ck_assert_msg(strstr(report.rows[0].reason, "not one of its samples carries light") != NULL, "%s",
+                      report.rows[0].reason);
+        lc_report_release(&report);
+        report = verify(&e, NULL, surely[i], 0, 1);
+        ck_assert_msg(has_verdict(&report, LC_ROW_FAIL) > 0, "%s: not found", surely[i]);
+        lc_report_release(&report);
+    }
+}
+END_TEST
+
+/* With too few samples for its margin a row is undecided, and the run ends with 3. */
+START_TEST(what_cannot_be_shown_is_undecided)
+{
+    lc_report report = verify_suite(&tiny, find("light_direct"), "analytic", "plane_rectangle", 1e-5, 1);
+    ck_assert_int_eq(report.count, 1);
+    ck_assert_int_eq(report.rows[0].verdict, LC_ROW_UNDECIDED);
+    ck_assert_msg(strstr(report.rows[0].reason, "undecided after") != NULL, "%s", report.rows[0].reason);
+    ck_assert(report.rows[0].samples >= 1024 && report.rows[0].samples <= 4096);
+    ck_assert_int_eq(lc_report_status(&report), LC_UNDECIDED);
+    lc_report_release(&report);
+}
+END_TEST
+
+/* ---- the same row everywhere --------------------------------------------------------------------------------------- */
+
+static void ck_same_row(const lc_row *a, const lc_row *b)
+{
+    ck_assert_str_eq(a->check, b->check);
+    ck_assert_str_eq(a->scene, b->scene);
+    ck_assert_str_eq(a->estimator, b->estimator);
+    ck_assert_str_eq(a->reason, b->reason);
+    ck_assert_str_eq(a->reproduce, b->reproduce);
+    ck_assert_msg(a->verdict == b->verdict && a->samples == b->samples && a->paths == b->paths &&
+                      a->channel == b->channel && memcmp(&a->ratio, &b->ratio, sizeof a->ratio) == 0 &&
+                      memcmp(&a->low, &b->low, sizeof a->low) == 0 && memcmp(&a->high, &b->high, sizeof a->high) == 0 &&
+                      a->margin == b->margin && a->expected == b->expected && a->tile_x == b->tile_x &&
+                      a->tile_y == b->tile_y && a->tile_width == b->tile_width,
+                  "%s %s %s: ratio %.17g against %.17g, samples %llu against %llu", a->check, a->scene, a->estimator,
+                  a->ratio, b->ratio, (unsigned long long)a->samples, (unsigned long long)b->samples);
+}
+
+START_TEST(a_row_is_the_same_alone_and_again)
+{
+    lc_report whole = verify(NULL, NULL, "lamp_100w", 0.2, 3);
+    lc_report again = verify(NULL, NULL, "lamp_100w", 0.2, 3);
+    lc_report other = verify(NULL, NULL, "lamp_100w", 0.2, 4);
+    int differ = 0;
+    ck_assert(whole.count >= 3 && whole.count == again.count && whole.count == other.count);
+    for (int i = 0; i < whole.count; ++i) {
+        const lc_row *row = &whole.rows[i];
+        ck_same_row(row, &again.rows[i]);
+        differ += !row->exact && row->ratio != other.rows[i].ratio;
+        lc_report alone = verify(find(row->estimator), row->check, row->scene, 0.2, 3);
+        int found = 0;
+        for (int k = 0; k < alone.count; ++k) /* a check may make several claims about one pair */
+            if (alone.rows[k].samples == row->samples && strcmp(alone.rows[k].source, row->source) == 0 &&
+                alone.rows[k].ratio == row->ratio) {
+                ck_same_row(row, &alone.rows[k]);
+                found = 1;
+            }
+        ck_assert_msg(found || row->exact, "%s %s %s: another row when alone", row->check, row->scene, row->estimator);
+        lc_report_release(&alone);
+    }
+    ck_assert_int_gt(differ, 0); /* another seed, other numbers */
+    ck_assert_str_eq(whole.budget, again.budget);
+    lc_report_release(&whole);
+    lc_report_release(&again);
+    lc_report_release(&other);
+}
+END_TEST
+
+/* ---- tables --------------------------------------------------------------------------------------------------------- */
+
+/* The statistical claims that a suite makes about a scene. */
+static lc_claims claims_about(const lc_suite *suite, const lc_scene *scene)
+{
+    lc_claims claims = {NULL, 0};
+    lc_error err = {""};
+    for (const lc_estimator *const *e = lc_estimators; *e; ++e)
+        for (const lc_check *const *c = lc_checks; *c; ++c)
+            if ((*c)->plan)
+                ck_assert_msg((*c)->plan(*c, &claims, scene, *e, &err) == LC_OK, "%s", err.text);
+    int kept = 0;
+    for (int i = 0; i < claims.count; ++i)
+        if (!claims.items[i].exact && !(claims.items[i].full_only && strcmp(suite->name, "quick") == 0))
+            claims.items[kept++] = claims.items[i];
+    claims.count = kept;
+    return claims;
+}
+
+static int same_film(const lc_claim *a, const lc_claim *b)
+{
+    return a->estimator == b->estimator && a->min_bounces == b->min_bounces && a->max_bounces == b->max_bounces;
+}
+
+/* What a suite plans to render of a scene: each film once, for the claim that wants most of it. */
+static double planned_of(const lc_suite *suite, const char *name)
+{
+    lc_scene *scene;
+    lc_error err = {""};
+    double planned = 0;
+    ck_assert_msg(load_small(&scene, name, &err) == LC_OK, "%s", err.text);
+    lc_claims claims = claims_about(suite, scene);
+    for (int i = 0; i < claims.count; ++i) {
+        const lc_claim *claim = &claims.items[i];
+        double c = lc_cell_noise(name, claim->estimator->name, claim->max_bounces), most = 0;
+        int is_first = 1;
+        for (int k = 0; k < claims.count && !isnan(c); ++k) {
+            if (!same_film(claim, &claims.items[k]))
+                continue;
+            const lc_claim *other = &claims.items[k];
+            double hub = other->other ? lc_cell_noise(name, other->other->name, other->max_bounces) : 0;
+            double margin = fmax(suite->margin * fmax(1, c), other->margin);
+            is_first &= k >= i;
+            most = fmax(most, (double)lc_planned_samples(hypot(c, isnan(hub) ? 0 : hub), margin, 1));
+        }
+        planned += is_first ? most : 0;
+    }
+    lc_claims_release(&claims);
+    lc_scene_free(scene);
+    return planned;
+}
+
+START_TEST(suites_keep_their_caps)
+{
+    for (const lc_suite *s = lc_suites; s->name; ++s) {
+        double planned = 0;
+        for (const char *const *scene = lc_suite_scenes; *scene; ++scene)
+            planned += planned_of(s, *scene);
+        ck_assert_msg(planned <= s->most_samples, "%s: %.3g planned, cap %.3g", s->name, planned, s->most_samples);
+        ck_assert_msg(planned > 0.1 * s->most_samples, "%s: only %.3g planned", s->name, planned);
+        ck_assert_ptr_eq(lc_suite_find(s->name), s);
+    }
+    ck_assert_ptr_null(lc_suite_find("nosuch"));
+}
+END_TEST
+
+/* (11 c / margin)^2 over the pixels: c = 1, 1%: 1.21 million over 4096 is 295.4. */
+START_TEST(planned_samples_by_hand)
+{
+    ck_assert_uint_eq(lc_planned_samples(1, 0.01, 4096), 296);
+    ck_assert_uint_eq(lc_planned_samples(0, 0.01, 4096), 1);
+    ck_assert_uint_eq(lc_planned_samples(2, 0.02, 1), 1210000);
+    ck_assert_uint_eq(lc_planned_samples(1, 1e-300, 1), (uint64_t)1 << 62);
+}
+END_TEST
+
+START_TEST(cells_name_what_there_is)
+{
+    for (const lc_cell *cell = lc_cells; cell->scene; ++cell) {
+        int known = 0;
+        for (const char *const *s = lc_suite_scenes; *s; ++s)
+            known |= strcmp(*s, cell->scene) == 0;
+        ck_assert_msg(known, "%s is not in the suites", cell->scene);
+        find(cell->estimator);
+        ck_assert_msg(cell->c >= 0 && cell->c < 1000, "%s %s: c = %g", cell->scene, cell->estimator, cell->c);
+        ck_assert(lc_cell_noise(cell->scene, cell->estimator, cell->max_bounces) == cell->c);
+    }
+    ck_assert(isnan(lc_cell_noise("nosuch", "light_direct", 1)));
+}
+END_TEST
+
+Suite *lc_suite_verify(void)
+{
+    Suite *suite = suite_create("verify");
+    TCase *tc = tcase_create("core");
+    tcase_set_timeout(tc, 300);
+    tcase_add_test(tc, right_estimators_are_not_called_wrong);
+    tcase_add_test(tc, every_mutant_is_found);
+    tcase_add_test(tc, two_percent_more_is_found_and_named);
+    tcase_add_test(tc, one_nan_is_found_and_placed);
+    tcase_add_test(tc, black_does_not_pass_where_there_is_light);
+    tcase_add_test(tc, what_cannot_be_shown_is_undecided);
+    tcase_add_test(tc, a_row_is_the_same_alone_and_again);
+    tcase_add_test(tc, suites_keep_their_caps);
+    tcase_add_test(tc, planned_samples_by_hand);
+    tcase_add_test(tc, cells_name_what_there_is);
+    suite_add_tcase(suite, tc);
+    return suite;
+}
