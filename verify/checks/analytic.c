@@ -80,6 +80,7 @@ static const struct {
     {"flipped_twosided", expect_direct, 1e-5, "Lambert's polygon formula"},
     {"sky", expect_direct, 1e-5, "Lo = rho L under a constant sky"},
     {"light_behind", expect_black, 0, "a lamp seen from its back gives nothing"},
+    {"light_below", expect_black, 0, "a lamp below the horizon gives nothing"},
     {"no_lights", expect_black, 0, "no light, no light"},
 };
 

@@ -85,6 +85,24 @@ static lc_status water_view(lc_rgb *value, int *kind, const lc_scene *scene, con
     return LC_OK;
 }
 
+/* Glass and mirror in one surface, seen from its front, which is in the water; a reflection of either kind shows the floor. */
+static lc_status blend_view(lc_rgb *value, int *kind, const lc_scene *scene, const lc_hit *hit, void *user,
+                            lc_error *err)
+{
+    const lc_scene_desc *desc = lc_scene_description(scene);
+    (void)user;
+    if (!hit->valid || hit->shape != 0)
+        return lc_fail(err, LC_FAULT, "%s: a camera ray misses the water", desc->name);
+    double f = fresnel_at(hit, 1 / 1.33);
+    *kind = f < 1;
+    if (value) {
+        const lc_side *side = &desc->materials[desc->shapes[0].material].side[0];
+        lc_rgb reflected = lc_rgb_mul(lc_rgb_add(gray(side->glass * f), side->mirror), lamp(scene));
+        *value = lc_rgb_add(reflected, lc_rgb_scale(side->glass * (1 - f) * 1.33 * 1.33, desc->sky));
+    }
+    return LC_OK;
+}
+
 static lc_status plates_view(lc_rgb *value, int *kind, const lc_scene *scene, const lc_hit *hit, void *user,
                              lc_error *err)
 {
@@ -108,6 +126,7 @@ static const struct row {
     {"glass_slab", slab_view, SLAB_BOUNCES, "T = (1-R)^2 sum of R^2j, R by Fresnel at each face"},
     {"glass_sphere", ball_view, BALL_BOUNCES, "L = F + (1-F)(1 - F^(B-1)) through a ball in a white sky"},
     {"critical_angle", water_view, 1, "F L + (1-F) n^2 L, total reflection beyond the critical angle"},
+    {"glass_blend", blend_view, 1, "g (F Lf + (1-F) n^2 Ls) + r Lf: glass and mirror in one surface"},
     {"mirror_sky", plates_view, 1, "a convex reflector in a sky L returns its reflectance times L"},
 };
 enum { ROWS = sizeof rows / sizeof rows[0] };

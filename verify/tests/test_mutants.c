@@ -1,0 +1,175 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Every mutant is shown wrong by the quick suite, here by one check on one scene, so that it stays fast; what it was
+ * before is not. */
+#include "verify/tests/tests.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "estimators/registry.h"
+#include "io/scene_path.h"
+#include "io/scene_read.h"
+#include "verify/judge/judge.h"
+#include "verify/mutants/registry.h"
+
+/* Which check catches it, and where. A scene blind to the bug would leave it UNDECIDED or, worse, let it PASS. */
+static const struct row {
+    const char *mutant, *check, *scene;
+} rows[] = {
+    {"light_no_cosine", "analytic", "plane_point"},
+    {"light_no_pi", "analytic", "plane_point"},
+    {"light_no_count", "analytic", "two_lights"},
+    {"light_no_light_cosine", "analytic", "plane_rectangle"},
+    {"light_no_visibility", "equality", "occluder"},
+    {"light_no_distance", "analytic", "plane_rectangle"},
+    {"light_back_emits", "analytic", "light_behind"},
+    {"light_centre", "analytic", "plane_rectangle"},
+    {"light_below_horizon", "analytic", "light_below"},
+    {"light_one_percent", "analytic", "plane_point"},
+    /* On plane_rectangle, parallel to its lamp, cos cos d^2 = h^2: no variance, which proves nothing. */
+    {"three_point_jacobian_inverted", "analytic", "plane_tilted"},
+    {"three_point_back_emits", "analytic", "light_behind"},
+    {"three_point_no_visibility", "equality", "occluder"},
+    {"three_point_uniform_pick", "analytic", "two_lights"},
+    {"three_point_light_density", "analytic", "two_lights"},
+    {"hemisphere_no_cosine", "analytic", "plane_rectangle"}, /* under a constant sky it has no variance */
+    {"hemisphere_no_pi", "analytic", "sky"},
+    {"hemisphere_cosine_directions", "analytic", "sky"},
+    {"path_no_cosine", "equality", "bright_room"},
+    {"path_cosine_twice", "analytic", "sky"},
+    {"path_no_pi", "analytic", "sky"},
+    {"path_cosine_directions", "analytic", "sky"},
+    {"path_cosine_density", "equality", "bright_room"}, /* a constant sky is blind to it */
+    {"path_normal_not_turned", "equality", "bright_room"},
+    {"path_albedo_once", "furnace", "furnace_sphere"},
+    {"path_u_reaches_one", "analytic", "sky"},
+    {"path_too_deep", "furnace", "furnace_sphere"},
+    {"path_too_short", "furnace", "furnace_sphere"},
+    {"path_emission_last", "furnace", "furnace_sphere"},
+    {"path_ends_at_light", "furnace", "furnace_checker"}, /* in furnace_sphere it is black without variance */
+    {"path_no_camera_emission", "emission", "cornell"},
+    {"path_no_camera_sky", "emission", "glass_sphere"},
+    {"mirror_extra_cosine", "specular", "mirror_corridor"},
+    {"mirror_wrong_sign", "specular", "mirror_corridor"},
+    {"mirror_no_albedo", "specular", "mirror_corridor"},
+    {"mirror_not_divided", "specular", "mirror_sky"},
+    {"mirror_divided_swapped", "specular", "mirror_sky"},
+    {"mirror_not_counted", "specular", "mirror_corridor"},
+    {"dielectric_schlick", "specular", "glass_slab"},
+    {"dielectric_eta_inverted", "specular", "critical_angle"},
+    {"dielectric_always_enters", "specular", "glass_slab"},
+    {"dielectric_total_is_black", "specular", "critical_angle"},
+    {"dielectric_no_ior_squared", "specular", "glass_blend"},
+    {"dielectric_weighted_again", "specular", "glass_sphere"},
+    {"dielectric_never_reflects", "specular", "glass_blend"},
+    {"dielectric_swapped", "specular", "glass_blend"},
+    {"dielectric_straight", "specular", "glass_slab"},
+};
+enum { ROWS = sizeof rows / sizeof rows[0] };
+
+static const lc_mutant *find_mutant(const char *name)
+{
+    for (const lc_mutant *m = lc_mutants; m->estimator; ++m)
+        if (strcmp(m->estimator->name, name) == 0)
+            return m;
+    return NULL;
+}
+
+static const lc_estimator *find_estimator(const char *name)
+{
+    for (const lc_estimator *const *e = lc_estimators; *e; ++e)
+        if (strcmp((*e)->name, name) == 0)
+            return *e;
+    return NULL;
+}
+
+static lc_status load_scene(lc_scene **out, const char *name, lc_error *err)
+{
+    char path[LC_PATH_SIZE];
+    lc_scene_desc desc;
+    lc_status status = lc_scene_locate(path, name, err);
+    if (status == LC_OK)
+        status = lc_scene_read(&desc, path, NULL, 0, err);
+    if (status != LC_OK)
+        return status;
+    status = lc_scene_build(out, &desc, err);
+    lc_scene_desc_release(&desc);
+    return status;
+}
+
+static void run(lc_report *report, const lc_estimator *estimator, const struct row *row, double margin)
+{
+    lc_verify_options options;
+    lc_error err = {""};
+    lc_verify_options_init(&options);
+    options.estimator = estimator;
+    options.check = row->check;
+    options.scene = row->scene;
+    options.margin = margin;
+    lc_status status = lc_verify(report, &options, load_scene, &err);
+    ck_assert_msg(status == LC_OK, "%s, %s on %s: %s", estimator->name, row->check, row->scene, err.text);
+}
+
+START_TEST(test_each_mutant_has_a_row)
+{
+    int count = 0;
+    for (const lc_mutant *m = lc_mutants; m->estimator; ++m, ++count) {
+        int found = 0;
+        for (int i = 0; i < ROWS; ++i)
+            found += strcmp(rows[i].mutant, m->estimator->name) == 0;
+        ck_assert_msg(found == 1, "%s has %d rows here, not 1", m->estimator->name, found);
+        ck_assert_msg(find_estimator(m->of) != NULL, "%s: no estimator '%s'", m->estimator->name, m->of);
+    }
+    ck_assert_int_eq(count, ROWS);
+}
+END_TEST
+
+/* As in `lightcheck verify -e MUTANT`: a row has the same share of the budget, alone or in the whole suite. */
+START_TEST(test_mutant_is_wrong)
+{
+    const struct row *row = &rows[_i];
+    const lc_mutant *mutant = find_mutant(row->mutant);
+    lc_report report;
+    ck_assert_msg(mutant != NULL, "no mutant '%s'", row->mutant);
+    run(&report, mutant->estimator, row, 0);
+    ck_assert_msg(report.count > 0, "%s: %s says nothing about it on %s", row->mutant, row->check, row->scene);
+    lc_status status = lc_report_status(&report);
+    ck_assert_msg(status == LC_WRONG, "%s (%s) survives %s on %s: %s", row->mutant, mutant->estimator->summary,
+                  row->check, row->scene, status == LC_OK ? "PASS" : report.rows[0].reason);
+    lc_report_release(&report);
+}
+END_TEST
+
+/* At four times the margin, which spares 15 of 16 samples and no right estimator. */
+START_TEST(test_origin_is_not_wrong)
+{
+    const struct row *row = &rows[_i];
+    const lc_mutant *mutant = find_mutant(row->mutant);
+    lc_report report;
+    ck_assert_msg(mutant != NULL, "no mutant '%s'", row->mutant);
+    for (int i = 0; i < _i; ++i)
+        if (strcmp(rows[i].check, row->check) == 0 && strcmp(rows[i].scene, row->scene) == 0 &&
+            strcmp(find_mutant(rows[i].mutant)->of, mutant->of) == 0)
+            return; /* was here already */
+    run(&report, find_estimator(mutant->of), row, 0.02);
+    /* The hub of an equality is not held against itself. */
+    ck_assert_msg(report.count > 0 || strcmp(row->check, "equality") == 0, "%s says nothing about %s on %s", row->check,
+                  mutant->of, row->scene);
+    for (int i = 0; i < report.count; ++i)
+        ck_assert_msg(report.rows[i].verdict == LC_ROW_PASS, "%s, %s: %s", mutant->of, row->check,
+                      report.rows[i].reason);
+    lc_report_release(&report);
+}
+END_TEST
+
+Suite *lc_suite_mutants(void)
+{
+    Suite *suite = suite_create("mutants");
+    TCase *c = tcase_create("mutants");
+    tcase_set_timeout(c, 120);
+    tcase_add_test(c, test_each_mutant_has_a_row);
+    tcase_add_loop_test(c, test_mutant_is_wrong, 0, ROWS);
+    tcase_add_loop_test(c, test_origin_is_not_wrong, 0, ROWS);
+    suite_add_tcase(suite, c);
+    return suite;
+}
