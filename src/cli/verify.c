@@ -151,7 +151,8 @@ static int run(const lc_command *self, int argc, char **argv)
     const lc_option options[] = {
         {0, "suite", LC_OPT_CHOICE, &a.suite, "quick|full", "margins 0.5% or 0.25% times max(1, c); default quick", 0,
          0, "quick|full"},
-        {'e', "estimator", LC_OPT_STRING, &a.estimator, "NAME", "only this estimator, or a mutant", 0, 0, NULL},
+        {'e', "estimator", LC_OPT_STRING, &a.estimator, "NAME|FILE.c",
+         "only this estimator, a mutant, or a file of your own", 0, 0, NULL},
         {'c', "check", LC_OPT_STRING, &a.check, "CHECK", "only this kind (see `lightcheck list checks`)", 0, 0, NULL},
         {0, "scene", LC_OPT_STRING, &a.scene, "SCENE", "only this scene of the suite", 0, 0, NULL},
         {0, "margin", LC_OPT_NUMBER, &a.margin, "M", "relative, for estimators with c <= 1; default: the suite's", 0, 1,
@@ -171,7 +172,7 @@ static int run(const lc_command *self, int argc, char **argv)
 
 const lc_command lc_command_verify = {
     "verify",
-    "[--suite quick|full] [-e NAME] [-c CHECK] [--scene SCENE] [options]",
+    "[--suite quick|full] [-e NAME|FILE.c] [-c CHECK] [--scene SCENE] [options]",
     "puts estimators to the test",
     "PASS: shown equal to what is expected, within the margin. FAIL: shown different. UNDECIDED: the samples ran out, "
     "which is no\n"
