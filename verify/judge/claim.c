@@ -225,6 +225,30 @@ static lc_status judge_look(look_result *out, const lc_film *film, const lc_film
     return LC_OK;
 }
 
+/* Share of a channel's and look's budget that the test of independence gets; the pyramid has the rest. */
+static const double NOISE_SHARE = 1.0 / 16;
+
+/* The channel in which samples are shown to depend on each other, else -1: every standard error rests on their
+ * independence, so that nothing else about such a film can be believed. */
+static int dependent_channel(lc_batches *out, const lc_film *film, double alpha)
+{
+    for (int c = 0; c < 3; ++c) {
+        *out = lc_batches_of_film(film, c);
+        if (lc_batches_depend(out, alpha))
+            return c;
+    }
+    return -1;
+}
+
+static void describe_dependence(lc_row *row, const lc_batches *b, int channel)
+{
+    row->verdict = LC_ROW_FAIL;
+    snprintf(row->reason, sizeof row->reason,
+             "%s on %s: its samples depend on each other: means of %d samples vary %.3g times as much as those of "
+             "independent ones (%s, p = 1e%.0f): a generator is shared or seeded again",
+             row->estimator, row->scene, (int)LC_BLOCK, b->ratio, channel_names[channel], b->log_p / log(10.0));
+}
+
 /* The looks up to the planned samples, and one more in reserve. Where they are more than the budget pays for, the first
  * ones go: without the last the row would end undecided by design. But none is beyond `most`. */
 static lc_looks row_looks(uint64_t planned, uint64_t most)
@@ -259,7 +283,8 @@ static lc_status judge_statistically(lc_row *row, lc_session *session, const lc_
     lc_looks looks = row_looks(lc_planned_samples(hypot(c, c_other), room, pixels), most);
     lc_budget budget = {session->options->false_fail, session->options->false_pass, session->rows, 3, LC_MOST_LOOKS};
     lc_pyramid_plan plan;
-    lc_pyramid_plan_init(&plan, lc_budget_row_fail(&budget), lc_budget_row_pass(&budget));
+    double alpha = lc_budget_row_fail(&budget);
+    lc_pyramid_plan_init(&plan, (1 - NOISE_SHARE) * alpha, lc_budget_row_pass(&budget));
 
     const lc_expected *expected = NULL;
     lc_error why = {""};
@@ -270,7 +295,9 @@ static lc_status judge_statistically(lc_row *row, lc_session *session, const lc_
     if (status != LC_OK)
         return lc_fail(err, status, "%s", why.text);
     look_result result = {.verdict = LC_GO_ON};
-    for (int k = 0; status == LC_OK && k < looks.count && result.verdict == LC_GO_ON; ++k) {
+    lc_batches batches;
+    int dependent = -1;
+    for (int k = 0; status == LC_OK && k < looks.count && result.verdict == LC_GO_ON && dependent < 0; ++k) {
         const lc_film *film, *other = NULL;
         row->samples = lc_looks_samples(&looks, k);
         status = lc_session_film(&film, session, claim->scene, claim->estimator, claim->min_bounces, claim->max_bounces,
@@ -291,12 +318,15 @@ static lc_status judge_statistically(lc_row *row, lc_session *session, const lc_
             return LC_OK;
         }
         status = judge_look(&result, film, other, expected, field, &plan, row->margin, claim->tolerance, err);
+        dependent = dependent_channel(&batches, film, NOISE_SHARE * alpha);
     }
     if (status != LC_OK)
         return status;
     row->verdict = result.verdict == LC_PASS ? LC_ROW_PASS : result.verdict == LC_FAIL ? LC_ROW_FAIL : LC_ROW_UNDECIDED;
     fill_numbers(row, &result.hardest, result.channel, result.scale, plan.alpha_pass, (double)row->paths);
     describe(row, &result.hardest);
+    if (dependent >= 0)
+        describe_dependence(row, &batches, dependent);
     return LC_OK;
 }
 

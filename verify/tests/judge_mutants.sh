@@ -116,6 +116,8 @@ mutant undecided_is_pass $claim 's/LC_ROW_FAIL : LC_ROW_UNDECIDED;/LC_ROW_FAIL :
 # Samples.
 mutant bad_samples_skipped $render 's/film->bad += bad->count;/(void)0;/'
 mutant bad_samples_of_the_hub_skipped $claim 's/if (film->bad || (other && other->bad))/if (film->bad)/; s/describe_bad(row, film->bad ? film : other,/describe_bad(row, film,/'
+mutant dependence_not_asked $claim 's/dependent = dependent_channel(.*/dependent = -1;/'
+mutant dependence_shown_by_anything verify/stats/variance.c 's/b->log_p <= 2 \* log(alpha)/b->log_p <= 0.5 * log(alpha)/'
 mutant same_stream_twice $estimate 's/if (a->seed == b->seed && a->arm == b->arm/if (0 \&\& a->arm == b->arm/'
 mutant third_moment_not_merged src/core/film.c 's/m->m3 += o->m3 + square/m->m3 += square/'
 
