@@ -232,7 +232,7 @@ static lc_status judge_look(look_result *out, const lc_film *film, const lc_film
 static int row_looks(uint64_t samples[LC_MOST_LOOKS], uint64_t planned, uint64_t most)
 {
     static const double share[LC_MOST_LOOKS] = {0.2, 0.4, 0.6, 1, 4};
-    double all = (double)(planned < most ? planned : most);
+    double all = fmax((double)(planned < most ? planned : most), LC_LEAST_SAMPLES);
     int count = 0;
     for (int k = 0; k < LC_MOST_LOOKS; ++k) {
         uint64_t n = (uint64_t)ceil(share[k] * all / LC_BLOCK) * LC_BLOCK;
