@@ -37,8 +37,8 @@ static double meet_sphere(const lc_round *sphere, const query *q, int is_from, i
             return -1.0;
         double far = -b - copysign(sqrt(discriminant), b);
         double near = far != 0 ? (lc_dot(oc, oc) - r * r) / far : 0.0;
-        root[0] = fmin(near, far);
-        root[1] = fmax(near, far);
+        root[0] = near < far ? near : far;
+        root[1] = near < far ? far : near;
     }
     if (is_to) { /* one root is t_max and does not count */
         int end = fabs(root[0] - q->t_max) < fabs(root[1] - q->t_max) ? 0 : 1;
@@ -160,7 +160,7 @@ static void fill_ray(struct RTCRay *ray, lc_vec3 o, lc_vec3 d, double t_far, dou
 static void finish_face(const lc_face *face, lc_vec3 o, lc_vec3 d, lc_hit *hit)
 {
     double t = lc_dot(face->n, lc_sub(face->o, o)) / lc_dot(face->n, d);
-    t = fmax(t, 0.0); /* in a corner, rounding may put `o` a hair behind the neighbour */
+    t = t > 0 ? t : 0.0; /* in a corner, rounding may put `o` a hair behind the neighbour */
     hit->p = lc_add(o, lc_scale(t, d));
     lc_vec3 r = lc_sub(hit->p, face->o);
     double u = lc_dot(face->du, r), v = lc_dot(face->dv, r);

@@ -73,11 +73,11 @@ void lc_shape_uv(const lc_scene *scene, int shape, int part, lc_vec3 p, double *
         double z = s * lc_dot(round->n, r);
         x = s * lc_dot(round->eu, r);
         y = s * lc_dot(round->ev, r);
-        *v = atan2(hypot(x, y), z) * LC_INV_PI;
+        *v = atan2(sqrt(x * x + y * y), z) * LC_INV_PI;
     } else {
         x = lc_dot(round->du, r);
         y = lc_dot(round->dv, r);
-        *v = hypot(x, y);
+        *v = sqrt(x * x + y * y);
     }
     double phi = atan2(y, x);
     *u = (phi < 0 ? phi + 2.0 * LC_PI : phi) * (0.5 * LC_INV_PI);
