@@ -9,7 +9,7 @@
 
 const lc_suite lc_suites[] = {
     {"quick", 0.005, 6e8},
-    {"full", 0.0025, 3.6e9},
+    {"full", 0.0025, 4.8e9},
     {NULL, 0, 0},
 };
 

@@ -103,8 +103,8 @@ static lc_status judge_all(lc_report *report, lc_session *session, const lc_clai
 
 lc_status lc_verify(lc_report *report, const lc_verify_options *options, lc_load_scene_fn *load, lc_error *err)
 {
-    lc_scene *scenes[64] = {NULL};
-    int scene_count = 0;
+    lc_scene **scenes = NULL;
+    int scene_count = 0, suite_scenes = 0;
     lc_claims claims = {NULL, 0};
     lc_session session = {.options = options, .margin = options->margin > 0 ? options->margin : options->suite->margin};
     lc_status status = LC_OK;
@@ -113,8 +113,11 @@ lc_status lc_verify(lc_report *report, const lc_verify_options *options, lc_load
     report->false_fail = options->false_fail;
     report->false_pass = options->false_pass;
     snprintf(report->suite, sizeof report->suite, "%s", options->suite->name);
-    status = plan_host(&claims, err);
-    for (int i = 0; lc_suite_scenes[i] && status == LC_OK; ++i) {
+    while (lc_suite_scenes[suite_scenes])
+        ++suite_scenes;
+    scenes = calloc((size_t)suite_scenes, sizeof *scenes);
+    status = scenes ? plan_host(&claims, err) : lc_fail(err, LC_FAULT, "out of memory for the scenes");
+    for (int i = 0; i < suite_scenes && status == LC_OK; ++i) {
         status = load(&scenes[scene_count], lc_suite_scenes[i], err);
         if (status == LC_OK)
             status = plan_scene(&claims, &report->not_applicable, options, scenes[scene_count++], err);
@@ -131,6 +134,7 @@ lc_status lc_verify(lc_report *report, const lc_verify_options *options, lc_load
     lc_claims_release(&claims);
     for (int i = 0; i < scene_count; ++i)
         lc_scene_free(scenes[i]);
+    free(scenes);
     return status;
 }
 

@@ -8,11 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "estimators/registry.h"
-#include "io/scene_path.h"
-#include "io/scene_read.h"
 #include "verify/judge/judge.h"
 #include "verify/proof/exact.h"
+#include "verify/proof/rendered.h"
 #include "verify/proof/synthetic.h"
 #include "verify/stats/stats.h"
 
@@ -226,95 +224,6 @@ static int report_compare(FILE *table, uint64_t seed)
     return broken;
 }
 
-/* ---- rendered nulls ----------------------------------------------------------------------------------------- */
-
-static lc_status load_scene(lc_scene **out, const char *name, lc_error *err)
-{
-    char path[LC_PATH_SIZE];
-    lc_scene_desc desc;
-    lc_status status = lc_scene_locate(path, name, err);
-    if (status == LC_OK)
-        status = lc_scene_read(&desc, path, NULL, 0, err);
-    if (status != LC_OK)
-        return status;
-    status = lc_scene_build(out, &desc, err);
-    lc_scene_desc_release(&desc);
-    return status;
-}
-
-static const lc_estimator *find_estimator(const char *name)
-{
-    for (const lc_estimator *const *e = lc_estimators; *e; ++e)
-        if (strcmp((*e)->name, name) == 0)
-            return *e;
-    return NULL;
-}
-
-enum { RENDERED = 60, RENDERED_SIDE = 16, RENDERED_SAMPLES = 512 };
-
-/* One seed, by one estimator, against another seed by the other one. */
-static lc_status rendered_null(lc_row *row, const lc_scene *scene, const char *const names[2], uint64_t seed,
-                               lc_error *err)
-{
-    lc_film *film[2] = {NULL, NULL};
-    lc_status status = LC_OK;
-    for (int i = 0; i < 2 && !status; ++i) {
-        const lc_estimator *estimator = find_estimator(names[i]);
-        lc_render_options options = {.min_bounces = 1,
-                                     .max_bounces = 1,
-                                     .seed = 2 * seed + (uint64_t)i,
-                                     .arm = lc_arm(names[i]),
-                                     .count = RENDERED_SAMPLES};
-        status = lc_film_create(&film[i], RENDERED_SIDE, RENDERED_SIDE, err);
-        if (!status)
-            status = lc_render(film[i], scene, estimator, &options, err);
-    }
-    if (!status)
-        status = lc_compare_films(row, film[0], film[1], 0.05, ALPHA, ALPHA, err);
-    lc_film_free(film[0]);
-    lc_film_free(film[1]);
-    return status;
-}
-
-static lc_status report_rendered(FILE *table, int *broken, uint64_t seed, lc_error *err)
-{
-    static const char *const scenes[] = {"plane_rectangle", "cornell_large", "sky"};
-    static const char *const pairs[][2] = {{"light_direct", "light_direct"},
-                                           {"hemisphere_direct", "hemisphere_direct"},
-                                           {"hemisphere_direct", "light_direct"}};
-    fprintf(
-        table,
-        "\n## Rendered nulls\n\n%dx%d pixels, %d samples, `lightcheck compare` of two seeds at %.2g for any false FAIL "
-        "(three channels, which\nhere nearly always agree, so that about a third of it is used). Embree's last bits "
-        "differ between kinds of CPU, and\nthese counts may with them.\n\n| scene | estimators | comparisons | wrong | "
-        "rate, 95%% interval | %.2g |\n|---|---|---|---|---|---|\n",
-        RENDERED_SIDE, RENDERED_SIDE, RENDERED_SAMPLES, ALPHA, ALPHA);
-    for (int s = 0; s < 3; ++s) {
-        lc_scene *scene = NULL;
-        lc_status status = load_scene(&scene, scenes[s], err);
-        for (int p = 0; p < 3 && !status; ++p) {
-            int sees = 1, wrong = 0;
-            for (int i = 0; i < 2; ++i)
-                sees = sees && lc_sees_everything(scene, find_estimator(pairs[p][i]));
-            if (!sees)
-                continue;
-            for (int i = 0; i < RENDERED && !status; ++i) {
-                lc_row row;
-                memset(&row, 0, sizeof row);
-                status = rendered_null(&row, scene, pairs[p], seed + 1000u * (uint64_t)p + (uint64_t)i, err);
-                wrong += row.verdict == LC_ROW_FAIL;
-            }
-            fprintf(table, "| %s | %s, %s |", scenes[s], pairs[p][0], pairs[p][1]);
-            *broken += print_rate(table, wrong, RENDERED, ALPHA);
-            fprintf(table, "\n");
-        }
-        lc_scene_free(scene);
-        if (status)
-            return status;
-    }
-    return LC_OK;
-}
-
 /* ---- the table ------------------------------------------------------------------------------------------------ */
 
 static lc_status report(FILE *table, int *broken, uint64_t seed, lc_error *err)
@@ -340,7 +249,7 @@ static lc_status report(FILE *table, int *broken, uint64_t seed, lc_error *err)
     *broken += report_rows(table, seed, laws, count, 1, 100);
     *broken += report_compare(table, seed);
     *broken += lc_exact_report(table, seed);
-    lc_status status = report_rendered(table, broken, seed, err);
+    lc_status status = lc_rendered_report(table, broken, seed, err);
     fprintf(
         table,
         "\n## False FAIL beyond what is claimed\n\nA bright sample in 1/p, worth 1/p: half of the light or more comes "

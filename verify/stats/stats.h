@@ -108,6 +108,11 @@ typedef struct lc_batches {
  */
 lc_batches lc_batches_of_film(const lc_film *film, int channel);
 
+/* 1 when samples are shown to depend on each other, at level alpha: p <= alpha^2, since the law is F's to its second
+ * moment only, and at least 100 degrees of freedom between, so that no few pixels rule. Generators that are shared or
+ * re-seeded have p of 1e-100 and below. 0 for NaN: what cannot be tested. */
+int lc_batches_depend(const lc_batches *batches, double alpha);
+
 /* ---- convergence ------------------------------------------------------------------------------------------- */
 
 typedef struct lc_slope {

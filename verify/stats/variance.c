@@ -73,3 +73,9 @@ lc_batches lc_batches_of_film(const lc_film *film, int channel)
     out.log_p = two_sided_log_p(out.ratio, out.df[0], out.df[1]);
     return out;
 }
+
+int lc_batches_depend(const lc_batches *b, double alpha)
+{
+    const double least_df = 100;
+    return b->pixels > 0 && b->df[0] >= least_df && b->log_p <= 2 * log(alpha);
+}

@@ -33,6 +33,7 @@ UNIFORM(uniform_right, 1)
 UNIFORM(uniform_high, 1.12) /* off by twice MARGIN */
 UNIFORM(uniform_edge, 1.06) /* by just MARGIN */
 UNIFORM(uniform_edge_low, 0.94)
+UNIFORM(uniform_off, 1.036) /* by 0.6 MARGIN */
 
 static const double MARGIN = 0.06;
 
@@ -43,6 +44,25 @@ static lc_rgb poisoned(const lc_scene *scene, const lc_ray *ray, const lc_hit *h
     if (lc_next(sampler) < 1e-3)
         value.r = -0.1;
     return value;
+}
+
+/* Right in the mean, but a sample's numbers come again: those of batch 0 in each batch; or each two samples share theirs. */
+static lc_rgb seeded_again(const lc_scene *scene, const lc_ray *ray, const lc_hit *hit, const lc_options *options,
+                           lc_sampler *sampler)
+{
+    lc_sampler own;
+    lc_sampler_start(&own, sampler->seed, sampler->arm, sampler->pixel, sampler->sample % LC_BLOCK);
+    lc_sampler_seek(&own, LC_DIMENSION_ESTIMATOR);
+    return uniform_right(scene, ray, hit, options, &own);
+}
+
+static lc_rgb shared_by_two(const lc_scene *scene, const lc_ray *ray, const lc_hit *hit, const lc_options *options,
+                            lc_sampler *sampler)
+{
+    lc_sampler own;
+    lc_sampler_start(&own, sampler->seed, sampler->arm, sampler->pixel, sampler->sample / 2);
+    lc_sampler_seek(&own, LC_DIMENSION_ESTIMATOR);
+    return uniform_right(scene, ray, hit, options, &own);
 }
 
 static lc_estimator estimator_of(const char *name, lc_radiance_fn *radiance)
@@ -163,6 +183,54 @@ START_TEST(bad_samples_fail)
 }
 END_TEST
 
+/* The mean may be right and every standard error wrong. A declared error keeps the pyramid silent: it is the noise
+ * that tells. */
+START_TEST(dependent_samples_fail)
+{
+    const setup s = {16, 16, MARGIN, 0.9, 1e-6, 1e-6};
+    lc_estimator again = estimator_of("again", seeded_again), two = estimator_of("two", shared_by_two);
+    lc_estimator right = estimator_of("right", uniform_right);
+    lc_scene *scene = build_scene(16, 16);
+    for (int i = 0; i < 2; ++i) {
+        lc_row row = judge_claim(&s, scene, i ? &two : &again, i ? &right : NULL, 1);
+        ck_assert_msg(row.verdict == LC_ROW_FAIL && strstr(row.reason, "its samples depend on each other: means of 64"),
+                      "%s", row.reason);
+        ck_assert_msg(strstr(row.reason, i ? "vary 2" : "vary 0 times") || strstr(row.reason, "vary 1.9"), "%s",
+                      row.reason);
+        ck_assert_uint_le(row.samples, 1024);
+    }
+    lc_scene_free(scene);
+}
+END_TEST
+
+/* Its own level, and no more: independent samples, of coins that come up once in 2000 as well. */
+START_TEST(independent_samples_do_not_depend)
+{
+    const int count = 2000, side = 12;
+    int shown = 0, near = 0;
+    lc_film *film;
+    for (int i = 0; i < count; ++i) {
+        ck_assert(lc_film_create(&film, side, side, NULL) == LC_OK);
+        for (int k = 0; k < side * side; ++k)
+            for (int b = 0; b < 4; ++b) {
+                double block[LC_BLOCK][3];
+                lc_sampler sampler;
+                lc_sampler_start(&sampler, 1, (uint32_t)i, (uint32_t)k, (uint32_t)b);
+                for (int j = 0; j < LC_BLOCK; ++j)
+                    block[j][0] = block[j][1] = block[j][2] = lc_next(&sampler) < (i % 2 ? 0.3 : 0.01);
+                lc_pixel_add(&film->pixels[k], (const double(*)[3])block, LC_BLOCK);
+            }
+        lc_batches batches = lc_batches_of_film(film, 0);
+        shown += lc_batches_depend(&batches, 0.2);
+        near += batches.log_p <= log(0.04);
+        lc_film_free(film);
+    }
+    check_rate(shown, count, 0.2);
+    check_rate(near, count, 0.04 * 1.3);
+    ck_assert_msg(near > count / 100, "%d of %d: no test at all", near, count);
+}
+END_TEST
+
 /* Too near to the margin to be shown within it, and declared too inaccurate to be shown wrong. */
 START_TEST(undecided_is_not_a_pass)
 {
@@ -173,12 +241,12 @@ START_TEST(undecided_is_not_a_pass)
 }
 END_TEST
 
-/* A row of one pixel plans for more looks than are paid for; it still gets the samples that it needs. */
+/* What lies so near to the margin that the planned samples do not show it within still passes: by those in reserve. */
 START_TEST(the_last_look_is_taken)
 {
-    const setup s = {1, 1, 0.005, 0, 1e-6, 1e-6};
-    lc_estimator right = estimator_of("right", uniform_right);
-    ck_assert_int_eq(count_verdicts(&s, LC_ROW_PASS, &right, NULL, 2), 2);
+    const setup s = {4, 4, MARGIN, 2 * MARGIN, 1e-6, 1e-6};
+    lc_estimator off = estimator_of("off", uniform_off);
+    ck_assert_int_eq(count_verdicts(&s, LC_ROW_PASS, &off, NULL, 3), 3);
 }
 END_TEST
 
@@ -302,6 +370,8 @@ Suite *lc_suite_judge_mutants(void)
     TCase *cases = tcase_create("judge");
     tcase_add_test(cases, right_passes_and_wrong_fails);
     tcase_add_test(cases, bad_samples_fail);
+    tcase_add_test(cases, dependent_samples_fail);
+    tcase_add_test(cases, independent_samples_do_not_depend);
     tcase_add_test(cases, undecided_is_not_a_pass);
     tcase_add_test(cases, the_last_look_is_taken);
     tcase_add_test(cases, every_look_is_paid_for);
