@@ -116,6 +116,7 @@ static lc_status verify(void *user, const lc_strings *rest, lc_error *err)
     options.margin = a->margin;
     options.false_fail = options.false_pass = a->budget;
     options.threads = a->threads;
+    options.given = a->estimator;
     options.check = a->check;
     options.scene = a->scene;
     options.on_row = show_row;

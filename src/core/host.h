@@ -260,6 +260,23 @@ typedef struct lc_render_options {
 lc_status lc_render(lc_film *film, const lc_scene *scene, const lc_estimator *estimator,
                     const lc_render_options *options, lc_error *err);
 
+/* The same film from samples that are made elsewhere, by a process of its own. `fill` hands over each sample of the options once; where it
+ * fails, the film is spoilt. */
+typedef lc_status lc_fill_fn(void *user, lc_film *film, const lc_render_options *options, lc_error *err);
+lc_status lc_render_from(lc_film *film, const lc_scene *scene, const lc_estimator *estimator,
+                         const lc_render_options *options, lc_fill_fn *fill, void *user, lc_error *err);
+/* For `fill`: samples first, ... of a pixel (counted row by row): LC_BLOCK of them at once, fewer only at the end of what
+ * is asked for, in ascending order. Bad ones are counted and overwritten by 0. One thread. */
+void lc_film_put(lc_film *film, uint32_t pixel, uint64_t first, double (*samples)[3], int count);
+
+/* Where the films of an estimator come from; NULL stands for lc_render. `render` adds to the film what lc_render would, or fails: LC_WRONG
+ * when the estimator is at fault, and `err` says of what. */
+typedef struct lc_film_source {
+    lc_status (*render)(void *user, lc_film *film, const lc_scene *scene, const lc_estimator *estimator,
+                        const lc_render_options *options, lc_error *err);
+    void *user;
+} lc_film_source;
+
 /* ---- replay: one sample, told step by step ------------------------------------------------------------------------ */
 
 typedef struct lc_trace_log {

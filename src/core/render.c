@@ -111,12 +111,10 @@ static void finish_tile(job *j, int reports)
         j->options->progress(j->options->user, fmin((double)done * j->options->shards / j->tiles, 1.0));
 }
 
-static void report_bad(job *j, const bad_samples *bad)
+static void report_bad(lc_film *film, const bad_samples *bad)
 {
-    lc_film *film = j->film;
     if (bad->count == 0)
         return;
-    pthread_mutex_lock(&j->lock);
     uint64_t known = (uint64_t)film->bad_y * (uint64_t)film->width + (uint64_t)film->bad_x;
     /* The first by pixel and sample, so that the report is the same for any number of threads. */
     if (film->bad == 0 || bad->pixel < known || (bad->pixel == known && bad->sample < film->bad_sample)) {
@@ -126,7 +124,6 @@ static void report_bad(job *j, const bad_samples *bad)
         memcpy(film->bad_value, bad->value, sizeof film->bad_value);
     }
     film->bad += bad->count;
-    pthread_mutex_unlock(&j->lock);
 }
 
 static void work(job *j, int reports)
@@ -139,7 +136,9 @@ static void work(job *j, int reports)
                 render_pixel(j, x, y, &bad);
         finish_tile(j, reports);
     }
-    report_bad(j, &bad);
+    pthread_mutex_lock(&j->lock);
+    report_bad(j->film, &bad);
+    pthread_mutex_unlock(&j->lock);
 }
 
 static void *work_in_thread(void *argument)
@@ -177,6 +176,24 @@ static lc_status check_options(const lc_film *film, const lc_scene *scene, const
     return LC_OK;
 }
 
+/* What the film holds now. */
+static void write_down(lc_film *film, const lc_scene *scene, const lc_estimator *estimator, const lc_render_options *o)
+{
+    if (film->count == 0) {
+        film->first = o->first;
+        film->seed = o->seed;
+        film->arm = o->arm;
+        film->min_bounces = o->min_bounces;
+        film->max_bounces = o->max_bounces;
+        film->shard = o->shard;
+        film->shards = o->shards;
+        film->has_third = 1;
+        snprintf(film->scene, sizeof film->scene, "%s", scene->desc.name);
+        snprintf(film->estimator, sizeof film->estimator, "%s", estimator->name);
+    }
+    film->count += o->count;
+}
+
 lc_status lc_render(lc_film *film, const lc_scene *scene, const lc_estimator *estimator,
                     const lc_render_options *options, lc_error *err)
 {
@@ -209,20 +226,40 @@ lc_status lc_render(lc_film *film, const lc_scene *scene, const lc_estimator *es
     if (o.progress)
         o.progress(o.user, 1.0);
 
-    if (film->count == 0) {
-        film->first = o.first;
-        film->seed = o.seed;
-        film->arm = o.arm;
-        film->min_bounces = o.min_bounces;
-        film->max_bounces = o.max_bounces;
-        film->shard = o.shard;
-        film->shards = o.shards;
-        film->has_third = 1;
-        snprintf(film->scene, sizeof film->scene, "%s", scene->desc.name);
-        snprintf(film->estimator, sizeof film->estimator, "%s", estimator->name);
-    }
-    film->count += o.count;
+    write_down(film, scene, estimator, &o);
     return LC_OK;
+}
+
+lc_status lc_render_from(lc_film *film, const lc_scene *scene, const lc_estimator *estimator,
+                         const lc_render_options *options, lc_fill_fn *fill, void *user, lc_error *err)
+{
+    lc_render_options o = *options;
+    lc_status status = check_options(film, scene, estimator, options, err);
+    if (status != LC_OK)
+        return status;
+    if (o.shards < 1) {
+        o.shard = 0;
+        o.shards = 1;
+    }
+    status = fill(user, film, &o, err);
+    if (status == LC_OK)
+        write_down(film, scene, estimator, &o);
+    return status;
+}
+
+void lc_film_put(lc_film *film, uint32_t pixel, uint64_t first, double (*samples)[3], int count)
+{
+    bad_samples bad = {0, 0, 0, {0, 0, 0}};
+    for (int i = 0; i < count; ++i) {
+        double *s = samples[i];
+        lc_rgb c = lc_color(s[0], s[1], s[2]);
+        if (is_bad(c)) {
+            note_bad(&bad, c, pixel, first + (uint64_t)i);
+            s[0] = s[1] = s[2] = 0;
+        }
+    }
+    lc_pixel_add(&film->pixels[pixel], (const double(*)[3])samples, count);
+    report_bad(film, &bad);
 }
 
 /* Where `lightcheck sample --gdb` stops: everything is set up, the estimator comes next. */

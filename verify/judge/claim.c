@@ -360,18 +360,22 @@ lc_status lc_judge_claim(lc_row *row, lc_session *session, const lc_claim *claim
     snprintf(row->estimator, sizeof row->estimator, "%s", claim->estimator->name);
     snprintf(row->source, sizeof row->source, "%s", claim->source);
     snprintf(row->reproduce, sizeof row->reproduce, "%s verify --suite %s -c %s -e %s --scene %s --seed %llu",
-             o->program, o->suite->name, row->check, row->estimator, row->scene, (unsigned long long)o->seed);
+             o->program, o->suite->name, row->check,
+             o->given && claim->estimator == o->estimator ? o->given : row->estimator, row->scene,
+             (unsigned long long)o->seed);
     row->exact = claim->exact;
     row->min_bounces = claim->min_bounces;
     row->max_bounces = claim->max_bounces;
-    if (claim->exact)
-        return judge_exact(row, session, claim, err);
     lc_estimate *field = malloc(sizeof *field * (size_t)desc->width * (size_t)desc->height);
     if (!field)
         return lc_fail(err, LC_FAULT, "out of memory for the differences of %s", desc->name);
-    lc_status status = judge_statistically(row, session, claim, field, err);
+    lc_error why = {""};
+    lc_status status = claim->exact ? judge_exact(row, session, claim, &why)
+                                    : judge_statistically(row, session, claim, field, &why);
     free(field);
-    return status;
+    if (status == LC_WRONG) /* the estimator gave no film: it crashed, or took too long */
+        return describe_missing(row, &why);
+    return status == LC_OK ? LC_OK : lc_fail(err, status, "%s", why.text);
 }
 
 lc_status lc_compare_films(lc_row *row, const lc_film *a, const lc_film *b, double margin, double false_fail,

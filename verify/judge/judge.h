@@ -44,6 +44,8 @@ typedef struct lc_verify_options {
     uint64_t seed;
     int threads;
     const lc_estimator *estimator; /* only this one (it need not be in the registry), or NULL: all */
+    const char *given;             /* how that was named on the command line; NULL: by its name */
+    const lc_film_source *source;  /* of its films; NULL: lc_render */
     const char *check, *scene;     /* only these, or NULL */
     /* Called after each row, in the order of the report; may be NULL. */
     void (*on_row)(void *user, const lc_row *row, int done, int count);

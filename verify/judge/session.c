@@ -83,7 +83,14 @@ lc_status lc_session_film(const lc_film **out, lc_session *session, const lc_sce
                                  .threads = session->options->threads};
     session->paths += options.count * (uint64_t)desc->width * (uint64_t)desc->height;
     *out = key.film;
-    return lc_render(key.film, scene, estimator, &options, err);
+    const lc_film_source *source = estimator == session->options->estimator ? session->options->source : NULL;
+    status = source ? source->render(source->user, key.film, scene, estimator, &options, err)
+                    : lc_render(key.film, scene, estimator, &options, err);
+    if (status != LC_OK) { /* a film that failed is nothing to grow from */
+        lc_film_free(key.film);
+        --session->film_count;
+    }
+    return status;
 }
 
 static void release_expected(lc_expected *expected)
