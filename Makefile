@@ -10,7 +10,7 @@ PKGCONF ?= pkg-config
 # What the build needs. One call of the preprocessor finds which headers are missing, and which Embree is there.
 
 NEEDS := stdio.h=libc6-dev OpenEXR/openexr.h=libopenexr-dev png.h=libpng-dev expat.h=libexpat1-dev \
-         jansson.h=libjansson-dev gsl/gsl_cdf.h=libgsl-dev Random123/philox.h=librandom123-dev
+         jansson.h=libjansson-dev gsl/gsl_cdf.h=libgsl-dev Random123/philox.h=librandom123-dev seccomp.h=libseccomp-dev
 ifneq ($(filter needs check asan-check $(BUILD)/tests,$(MAKECMDGOALS)),)
 NEEDS += check.h=check
 CHECK_LIBS = $(shell $(PKGCONF) --libs check 2>/dev/null || echo -lcheck -lsubunit -lrt)
@@ -37,7 +37,7 @@ ifneq ($(MISSING),)
 $(error missing $(foreach n,$(MISSING),$(call header,$n)): install $(foreach n,$(MISSING),$(call package,$n)), $(SETUP))
 endif
 NEEDS_CFLAGS := -DLC_EMBREE=$(patsubst embree%,%,$(FOUND))
-NEEDS_LIBS   := -l$(FOUND) -lOpenEXRCore -lpng -lexpat -ljansson -lgsl -lgslcblas
+NEEDS_LIBS   := -l$(FOUND) -lOpenEXRCore -lpng -lexpat -ljansson -lgsl -lgslcblas -lseccomp
 endif
 
 WARN := -std=c99 -pedantic -Wall -Wextra -Wshadow -Wconversion -Wmissing-prototypes -Wvla -Wstrict-prototypes
@@ -57,11 +57,13 @@ DIRS := src/core src/io estimators verify/stats verify/analytic verify/renderers
 LIB  := $(BUILD)/obj/texts.o $(patsubst %.c,$(BUILD)/obj/%.o,$(filter-out estimators/template.c,$(wildcard $(DIRS:%=%/*.c))))
 CLI  := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard src/cli/*.c))
 TEST := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard verify/tests/*.c))
+# The worker of the jail: the tracer and what it shares with verify/grade; no estimator, no check, no reader of files.
+WORKER := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard src/core/*.c verify/grade/worker/*.c) verify/grade/confine.c verify/grade/wire.c)
 # The proofs of the judge: programs of their own, two of whose files have a main.
 PROOF := $(patsubst %.c,$(BUILD)/obj/%.o,$(filter-out %/calibrate.c %/power.c,$(wildcard verify/proof/*.c)))
 
 .PHONY: all check verify verify-table full-table pictures povray-reference lint asan-check calibrate power judge-mutants bench needs fresh clean help
-all: $(BUILD)/lightcheck $(BUILD)/obj/estimators/template.o ## build the program
+all: $(BUILD)/lightcheck $(BUILD)/lightcheck-worker $(BUILD)/obj/estimators/template.o ## build the program
 
 # A plug-in finds the functions of lightcheck.h in the program, and no others.
 EXPORT = -Wl,--dynamic-list=$(BUILD)/lightcheck.syms
@@ -72,7 +74,10 @@ $(BUILD)/lightcheck.syms: src/core/lightcheck.h
 $(BUILD)/lightcheck: $(CLI) $(LIB) | $(BUILD)/lightcheck.syms
 	$(CC) $(LDFLAGS) $(EXPORT) -o $@ $^ $(ALL_LIBS)
 
-$(BUILD)/tests: $(TEST) $(LIB)
+$(BUILD)/lightcheck-worker: $(WORKER) | $(BUILD)/lightcheck.syms
+	$(CC) $(LDFLAGS) $(EXPORT) -o $@ $^ -l$(FOUND) -lseccomp -lm -pthread
+
+$(BUILD)/tests: $(TEST) $(LIB) | $(BUILD)/lightcheck-worker
 	$(CC) $(LDFLAGS) -o $@ $^ $(CHECK_LIBS) $(ALL_LIBS)
 
 # The texts that the program carries in itself.
@@ -158,4 +163,4 @@ clean: ## remove what was built
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' $(firstword $(MAKEFILE_LIST)) | expand -t 25
 
--include $(LIB:.o=.d) $(CLI:.o=.d) $(TEST:.o=.d) $(wildcard $(BUILD)/obj/verify/proof/*.d)
+-include $(LIB:.o=.d) $(WORKER:.o=.d) $(CLI:.o=.d) $(TEST:.o=.d) $(wildcard $(BUILD)/obj/verify/proof/*.d)

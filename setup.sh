@@ -4,7 +4,7 @@
 set -eu
 
 packages='make gcc libc6-dev libembree-dev libopenexr-dev libpng-dev libexpat1-dev libjansson-dev libgsl-dev
-librandom123-dev check povray'
+librandom123-dev libseccomp-dev check povray'
 
 usage='usage: ./setup.sh                       install what is missing
        ./setup.sh install [PACKAGE...]  the same, and these packages

@@ -7,12 +7,14 @@
 
 #include "cli/commands.h"
 #include "io/outfile.h"
+#include "verify/grade/jail.h"
+#include "verify/grade/plugin.h"
 #include "verify/judge/judge.h"
 
 typedef struct verify_arguments {
     const char *suite, *estimator, *check, *scene, *seed, *format, *report;
     double margin, budget;
-    int threads, measure;
+    int threads, measure, jail;
 } verify_arguments;
 
 static lc_status load_scene(lc_scene **out, const char *name, lc_error *err)
@@ -102,6 +104,39 @@ static void print_line(void *user, const char *text)
     printf("%s\n", text);
 }
 
+/* The estimator under test: a name, a file in the open, or a file in a jail. */
+static lc_status open_estimator(lc_verify_options *options, lc_jail **jail, lc_film_source *source,
+                                const verify_arguments *a, lc_error *err)
+{
+    *jail = NULL;
+    if (a->jail && (!a->estimator || !lc_is_source(a->estimator)))
+        return lc_fail(err, LC_BAD_INPUT, "--jail: -e FILE.c says whom to lock up");
+    if (!a->jail)
+        return a->estimator ? lc_cli_find_estimator(&options->estimator, a->estimator, err) : LC_OK;
+    lc_status status = lc_jail_open(jail, a->estimator, NULL, NULL, err);
+    if (status != LC_OK)
+        return status;
+    fputs(lc_jail_messages(*jail), stderr);
+    *source = lc_jail_source(*jail);
+    options->source = source;
+    options->estimator = lc_jail_estimator(*jail);
+    return LC_OK;
+}
+
+static lc_status write_report(const lc_report *report, const verify_arguments *a, lc_error *err)
+{
+    lc_status status = a->report ? write_folder(a->report, report, err) : LC_OK;
+    if (status != LC_OK)
+        return status;
+    if (strcmp(a->format, "json") == 0)
+        return lc_report_json(stdout, report, err);
+    if (strcmp(a->format, "junit") == 0)
+        lc_report_junit(stdout, report);
+    else
+        lc_report_text(stdout, report);
+    return LC_OK;
+}
+
 static lc_status verify(void *user, const lc_strings *rest, lc_error *err)
 {
     const verify_arguments *a = user;
@@ -109,6 +144,8 @@ static lc_status verify(void *user, const lc_strings *rest, lc_error *err)
         return lc_fail(err, LC_BAD_INPUT, "unexpected argument '%s'", rest->items[0]);
     lc_verify_options options;
     lc_report report;
+    lc_jail *jail = NULL;
+    lc_film_source source;
     if (a->measure)
         return lc_measure_cells(load_scene, print_line, NULL, err);
     lc_verify_options_init(&options);
@@ -123,26 +160,21 @@ static lc_status verify(void *user, const lc_strings *rest, lc_error *err)
     lc_status status = check_names(a, err);
     if (status == LC_OK)
         status = read_seed(&options.seed, a->seed, err);
-    if (status == LC_OK && a->estimator)
-        status = lc_cli_find_estimator(&options.estimator, a->estimator, err);
+    if (status == LC_OK)
+        status = open_estimator(&options, &jail, &source, a, err);
     if (status != LC_OK)
         return status;
     status = lc_verify(&report, &options, load_scene, err);
     if (status == LC_OK && report.count == 0)
         status = lc_fail(err, LC_BAD_INPUT, "nothing to verify: no check applies to what was selected");
-    if (status == LC_OK && a->report)
-        status = write_folder(a->report, &report, err);
-    if (status == LC_OK) {
-        if (strcmp(a->format, "json") == 0)
-            status = lc_report_json(stdout, &report, err);
-        else if (strcmp(a->format, "junit") == 0)
-            lc_report_junit(stdout, &report);
-        else
-            lc_report_text(stdout, &report);
-    }
+    if (status == LC_OK)
+        status = write_report(&report, a, err);
+    if (status == LC_OK && jail)
+        fprintf(stderr, "lightcheck verify: %s ran in a jail: %s\n", a->estimator, lc_jail_level(jail));
     if (status == LC_OK)
         status = lc_report_status(&report);
     lc_report_release(&report);
+    lc_jail_close(jail);
     return status;
 }
 
@@ -154,6 +186,7 @@ static int run(const lc_command *self, int argc, char **argv)
          0, "quick|full"},
         {'e', "estimator", LC_OPT_STRING, &a.estimator, "NAME|FILE.c",
          "only this estimator, a mutant, or a file of your own", 0, 0, NULL},
+        {0, "jail", LC_OPT_FLAG, &a.jail, NULL, "runs FILE.c locked up: for code that you do not trust", 0, 0, NULL},
         {'c', "check", LC_OPT_STRING, &a.check, "CHECK", "only this kind (see `lightcheck list checks`)", 0, 0, NULL},
         {0, "scene", LC_OPT_STRING, &a.scene, "SCENE", "only this scene of the suite", 0, 0, NULL},
         {0, "margin", LC_OPT_NUMBER, &a.margin, "M", "relative, for estimators with c <= 1; default: the suite's", 0, 1,

@@ -15,21 +15,22 @@
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
 #include "verify/grade/texts.h"
 
-enum { PATH_SIZE = 4096, MOST_OUTPUT = 1 << 18, MOST_OBJECT = 16 << 20, MOST_SECONDS = 60 };
+enum { PATH_SIZE = 4096, MOST_SOURCE = 1 << 20, MOST_OUTPUT = 1 << 18, MOST_OBJECT = 16 << 20, MOST_SECONDS = 60 };
 
 /* How a helper ends. */
-enum { MADE, NOT_MADE, TOO_LONG, NO_COMPILER, FAULT };
+enum { MADE, NOT_MADE, TOO_LONG, NO_COMPILER, NO_FILE, FAULT };
 
 typedef struct job {
     const char *path;
     const lc_compile_options *options;
-    int image, messages;
+    int image, messages, symbols; /* descriptors that the helper writes to; symbols: -1 where nobody asks */
     char folder[PATH_SIZE - 64];
 } job;
 
@@ -56,41 +57,52 @@ int lc_is_source(const char *path)
 
 /* ---- the compiler ------------------------------------------------------------------------------------------------ */
 
-static void become_compiler(const job *j)
+enum { MOST_WORDS = 24 };
+
+/* The compiler's command line. A confined one works in the folder itself, which another user could not reach by its path. */
+static void write_command(const char *words[MOST_WORDS], char texts[3][PATH_SIZE], const job *j)
 {
-    char include[PATH_SIZE], out[PATH_SIZE], file[PATH_SIZE];
-    const char *words[24];
-    int n = 0, cpp = is_cpp(j->path);
-    snprintf(include, sizeof include, "-I%s", j->folder);
-    snprintf(out, sizeof out, "%s/plugin.so", j->folder);
-    snprintf(file, sizeof file, "%s%s", j->path[0] == '-' ? "./" : "", j->path);
+    int n = 0, cpp = is_cpp(j->path), here = j->options->confined != NULL;
+    const char *slash = strrchr(j->path, '/'), *base = here && slash ? slash + 1 : j->path;
+    snprintf(texts[0], PATH_SIZE, "-I%s", here ? "." : j->folder);
+    snprintf(texts[1], PATH_SIZE, "%s/plugin.so", here ? "." : j->folder);
+    snprintf(texts[2], PATH_SIZE, "%s%s", base[0] == '-' ? "./" : "", base);
     words[n++] = cpp ? "c++" : "cc";
     words[n++] = cpp ? "-std=gnu++17" : "-std=gnu11";
     words[n++] = j->options->debug ? "-O0" : "-O2";
-    /* As the program's own estimators, so that the same file gives the same bits. */
-    words[n++] = "-ffp-contract=off";
+    words[n++] = "-ffp-contract=off"; /* as the program's own estimators, so that the same file gives the same bits */
     words[n++] = "-g";
     words[n++] = "-Wall";
     words[n++] = "-fPIC";
     words[n++] = "-shared";
     words[n++] = "-DLC_PLUGIN";
-    words[n++] = include;
+    words[n++] = texts[0];
     words[n++] = "-o";
-    words[n++] = out;
-    words[n++] = file;
-    if (cpp) {
-        words[n++] = "-static-libstdc++";
-        words[n++] = "-static-libgcc";
-    }
+    words[n++] = texts[1];
+    words[n++] = texts[2];
     words[n++] = "-lm";
     words[n] = NULL;
+}
+
+/* In a child: runs a program, its output to `out` and its complaints to the messages. */
+static void become(const job *j, const char *const *words, int out)
+{
+    const lc_confinement *c = j->options->confined;
+    char path[] = "PATH=/usr/local/bin:/usr/bin:/bin", locale[] = "LC_ALL=C", temporary[] = "TMPDIR=.";
+    char *const clean[] = {path, locale, temporary, NULL};
     int null = open("/dev/null", O_RDONLY);
-    if (null < 0 || dup2(null, 0) < 0 || dup2(j->messages, 1) < 0 || dup2(j->messages, 2) < 0 ||
-        setenv("TMPDIR", j->folder, 1) != 0 || setenv("LC_ALL", "C", 1) != 0)
+    if (null < 0 || dup2(null, 0) < 0 || dup2(out, 1) < 0 || dup2(j->messages, 2) < 0)
         _exit(127);
     close_range(3, ~0U, 0);
     signal(SIGPIPE, SIG_DFL);
-    execvp(words[0], (char *const *)words);
+    signal(SIGXFSZ, SIG_DFL);
+    if (c) {
+        if (chdir(j->folder) != 0 || !(lc_confine_compiler(c) & LC_JAIL_LIMITS))
+            _exit(127);
+        execvpe(words[0], (char *const *)words, clean);
+    } else if (setenv("TMPDIR", j->folder, 1) == 0 && setenv("LC_ALL", "C", 1) == 0) {
+        execvp(words[0], (char *const *)words);
+    }
     _exit(errno == ENOENT ? 126 : 127);
 }
 
@@ -119,21 +131,50 @@ static int write_all(int to, const void *data, size_t size)
     return 1;
 }
 
+/* Writes a file into the folder, for the prisoner where there is one. */
+static int write_file(const job *j, const char *name, const void *data, size_t size)
+{
+    char path[PATH_SIZE + 256];
+    snprintf(path, sizeof path, "%s/%.255s", j->folder, name);
+    int file = open(path, O_WRONLY | O_CREAT | O_EXCL, 0644);
+    int ok = file >= 0 && write_all(file, data, size);
+    if (file >= 0)
+        close(file);
+    return ok;
+}
+
 static int make_folder(job *j)
 {
-    char path[PATH_SIZE];
+    const lc_confinement *c = j->options->confined;
     const char *base = getenv("TMPDIR"), *text = (const char *)lc_text_lightcheck_h;
     int n = snprintf(j->folder, sizeof j->folder, "%s/lightcheck-cc-XXXXXX", base && base[0] ? base : "/tmp");
     if (n < 0 || n >= (int)sizeof j->folder || !mkdtemp(j->folder)) {
         j->folder[0] = 0;
         return 0;
     }
-    snprintf(path, sizeof path, "%s/lightcheck.h", j->folder);
-    int header = open(path, O_WRONLY | O_CREAT | O_EXCL, 0644);
-    int ok = header >= 0 && write_all(header, text, strlen(text));
-    if (header >= 0)
-        close(header);
-    return ok;
+    if (!write_file(j, "lightcheck.h", text, strlen(text)))
+        return 0;
+    return !c || !(c->parts & LC_JAIL_USER) || geteuid() != 0 || chown(j->folder, LC_JAIL_UID, LC_JAIL_UID) == 0;
+}
+
+/* The copy that a confined compiler sees. No link is followed: it could lead to somebody else's file. */
+static int copy_source(const job *j)
+{
+    static char source[MOST_SOURCE + 1]; /* the helper's own */
+    const char *slash = strrchr(j->path, '/');
+    struct stat info;
+    size_t size = 0;
+    ssize_t n = 1;
+    int from = open(j->path, O_RDONLY | O_NOFOLLOW | O_NONBLOCK);
+    if (from < 0 || fstat(from, &info) != 0 || !S_ISREG(info.st_mode))
+        n = -1;
+    while (n > 0 && size < sizeof source) {
+        n = read(from, source + size, sizeof source - size);
+        size += n > 0 ? (size_t)n : 0;
+    }
+    if (from >= 0)
+        close(from);
+    return n == 0 && write_file(j, slash ? slash + 1 : j->path, source, size);
 }
 
 static void remove_folder(const job *j)
@@ -157,7 +198,7 @@ static double now(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-static int run_compiler(const job *j)
+static int run(const job *j, const char *const *words, int out)
 {
     int status = 0, ended = 0;
     pid_t compiler = fork();
@@ -165,7 +206,7 @@ static int run_compiler(const job *j)
         return FAULT;
     if (compiler == 0) {
         setpgid(0, 0);
-        become_compiler(j);
+        become(j, words, out);
     }
     setpgid(compiler, compiler);
     for (double deadline = now() + MOST_SECONDS; !ended;) {
@@ -204,6 +245,22 @@ static int copy_object(const job *j)
     }
 }
 
+static int compile(job *j)
+{
+    static const char *const list[] = {"nm", "-D", "-u", "-P", "./plugin.so", NULL};
+    const char *words[MOST_WORDS];
+    char texts[3][PATH_SIZE];
+    if (!make_folder(j))
+        return FAULT;
+    if (j->options->confined && !copy_source(j))
+        return NO_FILE;
+    write_command(words, texts, j);
+    int result = run(j, words, j->messages);
+    if (result == MADE && j->symbols >= 0)
+        result = run(j, list, j->symbols);
+    return result == MADE && !copy_object(j) ? FAULT : result;
+}
+
 static int help(job *j)
 {
     struct sigaction action = {.sa_handler = on_death};
@@ -214,9 +271,7 @@ static int help(job *j)
     setpgid(0, 0);
     prctl(PR_SET_PDEATHSIG, SIGTERM);
     caller_died |= getppid() != caller;
-    int result = make_folder(j) ? run_compiler(j) : FAULT;
-    if (result == MADE && !copy_object(j))
-        result = FAULT;
+    int result = compile(j);
     remove_folder(j);
     return result;
 }
@@ -270,55 +325,83 @@ static lc_status report(const char *path, int result, const char *messages, lc_e
                        MOST_SECONDS);
     case NO_COMPILER:
         return lc_fail(err, LC_FAULT, "there is no program `%s`: install gcc", is_cpp(path) ? "c++" : "cc");
+    case NO_FILE:
+        return lc_fail(err, LC_BAD_INPUT, "%s: expected a regular file, and no link, of at most %d bytes", path,
+                       MOST_SOURCE);
     default:
         return lc_fail(err, LC_FAULT, "%s: cannot compile: no room in the temporary folder, or no processes", path);
     }
 }
 
-static lc_status open_pipes(job *j, int *from, lc_error *err)
+static lc_status open_files(job *j, int *from, lc_error *err)
 {
-    int ends[2];
+    int ends[2] = {-1, -1};
     j->image = memfd_create("plugin", MFD_CLOEXEC | MFD_ALLOW_SEALING);
-    if (j->image < 0)
-        return lc_fail(err, LC_FAULT, "no file in memory for an object: %s", strerror(errno));
-    if (pipe2(ends, O_CLOEXEC) != 0) {
-        close(j->image);
-        return lc_fail(err, LC_FAULT, "no pipe for a compiler: %s", strerror(errno));
-    }
+    j->symbols = j->options->confined ? memfd_create("symbols", MFD_CLOEXEC) : -1;
+    int failed = j->image < 0 || (j->options->confined && j->symbols < 0) || pipe2(ends, O_CLOEXEC) != 0;
     *from = ends[0];
     j->messages = ends[1];
-    return LC_OK;
+    return failed ? lc_fail(err, LC_FAULT, "no pipe or file in memory for a compiler: %s", strerror(errno)) : LC_OK;
+}
+
+/* "lc_next U" -> "lc_next"; a list that does not fit ends in '?'. */
+static void read_symbols(char *text, size_t size, int from)
+{
+    char line[512];
+    size_t used = 0;
+    FILE *file = from >= 0 && lseek(from, 0, SEEK_SET) == 0 ? fdopen(dup(from), "r") : NULL;
+    text[0] = 0;
+    while (file && fgets(line, sizeof line, file)) {
+        line[strcspn(line, " @\n")] = 0;
+        int n = snprintf(text + used, size - used, "%s\n", line);
+        if (n < 0 || (size_t)n >= size - used) {
+            text[size - 2] = '?';
+            break;
+        }
+        used += (size_t)n;
+    }
+    if (file)
+        fclose(file);
+}
+
+static lc_status work(lc_compiled *out, job *j, int from, lc_error *err)
+{
+    int status = 0;
+    pid_t helper = fork();
+    if (helper == 0) {
+        close(from);
+        _exit(help(j));
+    }
+    close(j->messages);
+    if (helper > 0)
+        read_messages(out->messages, sizeof out->messages, from);
+    close(from); /* a compiler that still talks is cut off */
+    while (helper > 0 && waitpid(helper, &status, 0) < 0 && errno == EINTR)
+        ;
+    int result = helper > 0 && WIFEXITED(status) ? WEXITSTATUS(status) : FAULT;
+    if (result == MADE && fcntl(j->image, F_ADD_SEALS, F_SEAL_WRITE | F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) != 0)
+        result = FAULT;
+    read_symbols(out->symbols, sizeof out->symbols, j->symbols);
+    return report(j->path, result, out->messages, err);
 }
 
 lc_status lc_compile(lc_compiled *out, const char *path, const lc_compile_options *options, lc_error *err)
 {
-    static const lc_compile_options defaults = {0};
+    static const lc_compile_options defaults = {0, NULL};
     job j = {.path = path, .options = options ? options : &defaults};
-    int from = -1, status = 0;
+    int from = -1;
     out->image = -1;
-    out->messages[0] = 0;
+    out->messages[0] = out->symbols[0] = 0;
     if (access(path, R_OK) != 0)
         return lc_fail(err, LC_BAD_INPUT, "%s: cannot read: %s", path, strerror(errno));
-    lc_status opened = open_pipes(&j, &from, err);
-    if (opened != LC_OK)
-        return opened;
-    pid_t helper = fork();
-    if (helper == 0) {
-        close(from);
-        _exit(help(&j));
-    }
-    close(j.messages);
-    if (helper > 0)
-        read_messages(out->messages, sizeof out->messages, from);
-    close(from);
-    while (helper > 0 && waitpid(helper, &status, 0) < 0 && errno == EINTR)
-        ;
-    int result = helper > 0 && WIFEXITED(status) ? WEXITSTATUS(status) : FAULT;
-    if (result == MADE && fcntl(j.image, F_ADD_SEALS, F_SEAL_WRITE | F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) != 0)
-        result = FAULT;
-    if (result == MADE)
+    lc_status status = open_files(&j, &from, err);
+    if (status == LC_OK)
+        status = work(out, &j, from, err);
+    if (j.symbols >= 0)
+        close(j.symbols);
+    if (status == LC_OK)
         out->image = j.image;
-    else
+    else if (j.image >= 0)
         close(j.image);
-    return report(path, result, out->messages, err);
+    return status;
 }

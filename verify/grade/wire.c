@@ -1,0 +1,137 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#define _GNU_SOURCE
+#include "verify/grade/wire.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { ARRAYS = 4 };
+
+/* One array of a scene: where its pointer and its number stand in lc_scene_desc. */
+static const struct {
+    size_t pointer, count, size;
+} arrays[ARRAYS] = {
+    {offsetof(lc_scene_desc, materials), offsetof(lc_scene_desc, material_count), sizeof(lc_material_desc)},
+    {offsetof(lc_scene_desc, shapes), offsetof(lc_scene_desc, shape_count), sizeof(lc_shape_desc)},
+    {offsetof(lc_scene_desc, points), offsetof(lc_scene_desc, point_count), sizeof(lc_point_desc)},
+    {offsetof(lc_scene_desc, directionals), offsetof(lc_scene_desc, directional_count), sizeof(lc_directional_desc)},
+};
+
+static void *get_pointer(const lc_scene_desc *scene, int i)
+{
+    void *pointer;
+    memcpy(&pointer, (const char *)scene + arrays[i].pointer, sizeof pointer);
+    return pointer;
+}
+
+static void set_pointer(lc_scene_desc *scene, int i, void *pointer)
+{
+    memcpy((char *)scene + arrays[i].pointer, &pointer, sizeof pointer);
+}
+
+static size_t size_of(const lc_scene_desc *scene, int i)
+{
+    int count;
+    memcpy(&count, (const char *)scene + arrays[i].count, sizeof count);
+    return (size_t)count * arrays[i].size;
+}
+
+uint64_t lc_wire_build(void)
+{
+    static const char when[] = LC_VERSION;
+    uint64_t hash = 1469598103934665603u; /* FNV-1a, 64 bits */
+    const size_t sizes[] = {LC_ABI,
+                            sizeof(lc_wire_request),
+                            sizeof(lc_wire_description),
+                            sizeof(lc_material_desc),
+                            sizeof(lc_shape_desc),
+                            sizeof(lc_point_desc),
+                            sizeof(lc_directional_desc)};
+    for (size_t i = 0; i < sizeof when; ++i)
+        hash = (hash ^ (unsigned char)when[i]) * 1099511628211u;
+    for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; ++i)
+        hash = (hash ^ sizes[i]) * 1099511628211u;
+    return hash;
+}
+
+static int write_all(int to, const void *data, size_t size)
+{
+    const char *at = data;
+    for (ssize_t n; size > 0; at += n, size -= (size_t)n) {
+        n = write(to, at, size);
+        if (n <= 0)
+            return 0;
+    }
+    return 1;
+}
+
+static int write_scene(int fd, const lc_scene_desc *scene)
+{
+    for (int i = 0; i < ARRAYS; ++i) {
+        const char *array = get_pointer(scene, i);
+        size_t size = size_of(scene, i);
+        if (arrays[i].size != sizeof(lc_material_desc) || i != 0) {
+            if (!write_all(fd, array, size))
+                return 0;
+            continue;
+        }
+        for (size_t k = 0; k < size / sizeof(lc_material_desc); ++k) {
+            lc_material_desc material = scene->materials[k];
+            memset(material.id, 0, sizeof material.id);
+            if (!write_all(fd, &material, sizeof material))
+                return 0;
+        }
+    }
+    return 1;
+}
+
+lc_status lc_wire_write(int *fd, const lc_wire_request *request, const lc_scene_desc *scene, lc_error *err)
+{
+    lc_wire_request copy = *request;
+    copy.build = lc_wire_build();
+    copy.options.progress = NULL;
+    copy.options.user = NULL;
+    memset(&copy.scene, 0, sizeof copy.scene);
+    if (scene) {
+        copy.scene = *scene;
+        memset(copy.scene.name, 0, sizeof copy.scene.name);
+        for (int i = 0; i < ARRAYS; ++i)
+            set_pointer(&copy.scene, i, NULL);
+    }
+    int file = memfd_create("request", MFD_CLOEXEC | MFD_ALLOW_SEALING);
+    if (file >= 0 && write_all(file, &copy, sizeof copy) && (!scene || write_scene(file, scene)) &&
+        fcntl(file, F_ADD_SEALS, F_SEAL_WRITE | F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) == 0) {
+        *fd = file;
+        return LC_OK;
+    }
+    lc_status status = lc_fail(err, LC_FAULT, "no file in memory for a worker's request: %s", strerror(errno));
+    if (file >= 0)
+        close(file);
+    return status;
+}
+
+const lc_wire_request *lc_wire_read(int fd, lc_scene_desc *scene)
+{
+    struct stat info;
+    if (fstat(fd, &info) != 0 || (size_t)info.st_size < sizeof(lc_wire_request))
+        return NULL;
+    size_t size = (size_t)info.st_size, at = sizeof(lc_wire_request);
+    char *map = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_PRIVATE, fd, 0);
+    if (map == MAP_FAILED)
+        return NULL;
+    const lc_wire_request *request = (const lc_wire_request *)(void *)map;
+    if (request->build != lc_wire_build())
+        return NULL;
+    *scene = request->scene;
+    for (int i = 0; i < ARRAYS; ++i) {
+        set_pointer(scene, i, map + at);
+        at += size_of(scene, i);
+    }
+    return at == size ? request : NULL;
+}
