@@ -1,9 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <errno.h>
+#include <signal.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "cli/commands.h"
+#include "verify/grade/plugin.h"
 
 typedef struct sample_arguments {
     const char *estimator, *pixel, *size;
@@ -20,24 +24,64 @@ static void print_line(void *user, const char *text)
     printf("  %s\n", text);
 }
 
-/* The same command again, under gdb, stopped where the estimator begins. */
+/* Compiles FILE.c for the debugger, where one is given, to an object of its own: gdb could not read it from memory. */
+static lc_status make_object(char object[64], const sample_arguments *a, lc_error *err)
+{
+    char messages[8192];
+    object[0] = 0;
+    if (!a->estimator || !lc_is_source(a->estimator))
+        return LC_OK;
+    snprintf(object, 64, "/tmp/lightcheck-gdb-%ld.so", (long)getpid());
+    lc_status status = lc_plugin_write(object, a->estimator, messages, sizeof messages, err);
+    fputs(messages, stderr);
+    if (status != LC_OK)
+        object[0] = 0;
+    return status;
+}
+
+/* gdb with the terminal to itself; its exit status, or -1 when there is none. */
+static int run_gdb(const char *const *command)
+{
+    int status = 0;
+    struct sigaction ignored = {.sa_handler = SIG_IGN}, before;
+    sigaction(SIGINT, &ignored, &before); /* ^C is gdb's */
+    pid_t child = fork();
+    if (child == 0) {
+        sigaction(SIGINT, &before, NULL);
+        execvp(command[0], (char *const *)command);
+        _exit(127);
+    }
+    while (child > 0 && waitpid(child, &status, 0) < 0 && errno == EINTR)
+        ;
+    sigaction(SIGINT, &before, NULL);
+    return child > 0 && WIFEXITED(status) && WEXITSTATUS(status) != 127 ? WEXITSTATUS(status) : -1;
+}
+
+/* The same command again, under gdb, stopped in the estimator's function. */
 static lc_status debug(const sample_arguments *a, lc_error *err)
 {
-    const char *command[64] = {"gdb", "-q",     "-ex",    "break lc_replay_begin", "-ex", "run",
-                               "-ex", "finish", "--args", "/proc/self/exe"};
-    char exe[4096];
-    int n = 10;
+    const char *command[64] = {"gdb", "-q", "-ex", "set breakpoint pending on", "-ex", "break lc_replay_begin", "-ex",
+                               "run", "-ex", "tbreak *radiance", "-ex", "continue", "-ex", "next", "--args",
+                               "/proc/self/exe"}; /* the arguments stand only at the function's first line */
+    char exe[4096], object[64];
+    int n = 16;
     ssize_t length = readlink("/proc/self/exe", exe, sizeof exe - 1);
     if (length > 0) {
         exe[length] = 0;
-        command[9] = exe;
+        command[n - 1] = exe;
     }
+    lc_status status = make_object(object, a, err);
+    if (status != LC_OK)
+        return status;
     for (int i = 0; i < a->argc && n < 63; ++i)
         if (strcmp(a->argv[i], "--gdb") != 0)
-            command[n++] = a->argv[i];
+            command[n++] = object[0] && strcmp(a->argv[i], a->estimator) == 0 ? object : a->argv[i];
     command[n] = NULL;
-    execvp("gdb", (char *const *)command);
-    return lc_fail(err, LC_FAULT, "--gdb: cannot run gdb; install the package gdb");
+    if (run_gdb(command) < 0)
+        status = lc_fail(err, LC_BAD_INPUT, "--gdb: there is no program `gdb`: install the package gdb");
+    if (object[0])
+        unlink(object);
+    return status;
 }
 
 static lc_status replay(void *user, const lc_strings *rest, lc_error *err)
@@ -94,7 +138,7 @@ static int run(const lc_command *self, int argc, char **argv)
         {0, "bounces", LC_OPT_INT, &a.bounces, "N", "as for render", 0, LC_UNBOUNDED, NULL},
         {0, "size", LC_OPT_STRING, &a.size, "WxH", "as for render", 0, 0, NULL},
         {'D', "define", LC_OPT_LIST, &a.definitions, "NAME=VALUE", "value of a <default> of the scene", 0, 0, NULL},
-        {0, "gdb", LC_OPT_FLAG, &a.gdb, NULL, "under gdb, stopped before the estimator is called", 0, 0, NULL},
+        {0, "gdb", LC_OPT_FLAG, &a.gdb, NULL, "under gdb, stopped in the estimator; FILE.c is compiled without optimisation", 0, 0, NULL},
         {0, NULL, LC_OPT_FLAG, NULL, NULL, NULL, 0, 0, NULL},
     };
     return lc_command_run(self, options, argc, argv, 1, 1,

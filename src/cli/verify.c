@@ -106,7 +106,7 @@ static void print_line(void *user, const char *text)
 
 /* The estimator under test: a name, a file in the open, or a file in a jail. */
 static lc_status open_estimator(lc_verify_options *options, lc_jail **jail, lc_film_source *source,
-                                const verify_arguments *a, lc_error *err)
+                                char *given, size_t size, const verify_arguments *a, lc_error *err)
 {
     *jail = NULL;
     if (a->jail && (!a->estimator || !lc_is_source(a->estimator)))
@@ -120,6 +120,8 @@ static lc_status open_estimator(lc_verify_options *options, lc_jail **jail, lc_f
     *source = lc_jail_source(*jail);
     options->source = source;
     options->estimator = lc_jail_estimator(*jail);
+    snprintf(given, size, "%s --jail", a->estimator);
+    options->given = given;
     return LC_OK;
 }
 
@@ -146,6 +148,7 @@ static lc_status verify(void *user, const lc_strings *rest, lc_error *err)
     lc_report report;
     lc_jail *jail = NULL;
     lc_film_source source;
+    char given[200];
     if (a->measure)
         return lc_measure_cells(load_scene, print_line, NULL, err);
     lc_verify_options_init(&options);
@@ -161,7 +164,7 @@ static lc_status verify(void *user, const lc_strings *rest, lc_error *err)
     if (status == LC_OK)
         status = read_seed(&options.seed, a->seed, err);
     if (status == LC_OK)
-        status = open_estimator(&options, &jail, &source, a, err);
+        status = open_estimator(&options, &jail, &source, given, sizeof given, a, err);
     if (status != LC_OK)
         return status;
     status = lc_verify(&report, &options, load_scene, err);

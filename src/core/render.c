@@ -262,8 +262,16 @@ void lc_film_put(lc_film *film, uint32_t pixel, uint64_t first, double (*samples
     report_bad(film, &bad);
 }
 
-/* Where `lightcheck sample --gdb` stops: everything is set up, the estimator comes next. */
-void lc_replay_begin(void) {}
+/* Where `lightcheck sample --gdb` stops first, to learn the address of the estimator's function. */
+#ifdef __GNUC__
+__attribute__((noinline, noclone))
+#endif
+void lc_replay_begin(lc_radiance_fn *radiance)
+{
+    static lc_radiance_fn *volatile next;
+    next = radiance;
+    (void)next;
+}
 
 lc_rgb lc_replay(lc_scene *scene, const lc_estimator *estimator, const lc_render_options *options, int width,
                  int height, int x, int y, uint64_t sample, const lc_trace_log *log)
@@ -272,7 +280,7 @@ lc_rgb lc_replay(lc_scene *scene, const lc_estimator *estimator, const lc_render
     lc_camera_frame frame;
     packet p;
     int i = (int)(sample % LC_PACKET);
-    lc_replay_begin();
+    lc_replay_begin(estimator->radiance);
     lc_camera_prepare(&frame, &scene->desc.camera, width, height);
     look(&p, scene, &frame, options, (uint32_t)(y * width + x), x, y, sample, log);
     scene->log = log;

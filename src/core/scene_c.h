@@ -90,7 +90,7 @@ lc_rgb lc_shape_radiance(const lc_scene *scene, int shape, int part, lc_vec3 p);
 /* Texture coordinates of a point on a shape, as Mitsuba 3 has them. */
 void lc_shape_uv(const lc_scene *scene, int shape, int part, lc_vec3 p, double *u, double *v);
 
-void lc_replay_begin(void);
+void lc_replay_begin(lc_radiance_fn *radiance);
 void lc_log_hit(const lc_scene *scene, const char *what, const lc_hit *hit);
 
 void lc_log(const lc_trace_log *log, const char *format, ...)

@@ -44,9 +44,7 @@ static uint64_t used_memory(void)
 
 static int set_limits(const lc_confinement *c, uint64_t processes, uint64_t descriptors)
 {
-    /* SIGXCPU may be caught, the hard limit a second later may not. */
-    struct rlimit cpu = {(rlim_t)ceil(c->cpu_seconds), (rlim_t)ceil(c->cpu_seconds) + 1};
-    int ok = setrlimit(RLIMIT_CPU, &cpu) == 0;
+    int ok = limit(RLIMIT_CPU, (uint64_t)ceil(c->cpu_seconds)); /* hard at once: SIGXCPU could be caught */
 #ifndef __SANITIZE_ADDRESS__ /* whose shadow has the size of the address space */
     ok &= limit(RLIMIT_AS, used_memory() + c->memory);
 #endif

@@ -69,7 +69,7 @@ static lc_rgb nowhere(const lc_scene *scene, const lc_ray *ray, const lc_hit *hi
 
 static lc_status compile(lc_jail *jail, const char *path, lc_error *err)
 {
-    const lc_confinement c = {jail->options.parts, 20, 2ULL << 30, 64 << 20};
+    const lc_confinement c = {jail->options.parts, 20, 2ULL << 30, 16 << 20};
     const lc_compile_options options = {0, &c};
     lc_compiled *compiled = malloc(sizeof *compiled);
     if (!compiled)

@@ -2,6 +2,8 @@
 #include "verify/grade/plugin.h"
 
 #include <dlfcn.h>
+#include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -89,4 +91,31 @@ lc_status lc_plugin_load(const lc_estimator **out, const char *path, char *messa
     if (status != LC_OK)
         close(compiled.image);
     return status;
+}
+
+lc_status lc_plugin_write(const char *object, const char *path, char *messages, size_t size, lc_error *err)
+{
+    static const lc_compile_options options = {1, NULL};
+    char buffer[1 << 16];
+    lc_compiled compiled;
+    lc_status status = lc_compile(&compiled, path, &options, err);
+    if (messages && size)
+        snprintf(messages, size, "%s", compiled.messages);
+    if (status != LC_OK)
+        return status;
+    int to = open(object, O_WRONLY | O_CREAT | O_EXCL, 0700);
+    ssize_t n = to < 0 ? -1 : 1;
+    for (off_t at = 0; n > 0; at += n) {
+        n = pread(compiled.image, buffer, sizeof buffer, at);
+        if (n > 0 && write(to, buffer, (size_t)n) != n)
+            n = -1;
+    }
+    close(compiled.image);
+    if (to >= 0 && close(to) != 0)
+        n = -1;
+    if (n == 0)
+        return LC_OK;
+    if (to >= 0)
+        unlink(object);
+    return lc_fail(err, LC_FAULT, "%s: cannot write: %s", object, strerror(errno));
 }

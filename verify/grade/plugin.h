@@ -16,6 +16,9 @@ int lc_is_plugin(const char *name);
  * order. `messages` (`size` bytes, may be NULL) is what the compiler said, warnings included. One thread. */
 lc_status lc_plugin_load(const lc_estimator **out, const char *path, char *messages, size_t size, lc_error *err);
 
+/* Compiles the file for a debugger into the shared object `object`, which must not be there yet; it is the caller's to remove. */
+lc_status lc_plugin_write(const char *object, const char *path, char *messages, size_t size, lc_error *err);
+
 /* What every descriptor must have: interface, name, texts, a function, sensible masks. `path` is for the message. */
 lc_status lc_descriptor_check(const lc_estimator *estimator, const char *path, lc_error *err);
 

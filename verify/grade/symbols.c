@@ -22,7 +22,7 @@ static const char others[] =
 static const char *const beginnings[] = {
     "lc_", "__stack_chk_", "__cxa_", "__gmon_start__", "_ITM_", "_GLOBAL_OFFSET_TABLE_", "_Unwind_", "__errno_location",
     "__printf_chk", "__fprintf_chk", "__snprintf_chk", "__memcpy_chk", "__memset_chk", "__memmove_chk", "__tls_get_addr",
-    "_Zn", "_Zd", "_ZS", "_ZN", "__dso_handle", "__gxx_personality",
+    "_Zn", "_Zd", "_ZS", "_ZN", "_ZT", "__dso_handle", "__gxx_personality",
 };
 
 static int is_in(const char *list, const char *name, size_t length)

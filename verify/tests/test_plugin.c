@@ -130,6 +130,16 @@ START_TEST(test_plugin_exports)
 }
 END_TEST
 
+START_TEST(test_plugin_gdb)
+{
+    expect("PATH=/nowhere L sample cornell -e path --pixel 3,4 --gdb", 2, "no program `gdb`");
+    if (run("command -v gdb") == 0)
+        expect("cp $S/path.c walk.c; printf 'bt 1\\nprint *options\\n' | L sample cornell -e walk.c --pixel 30,50 --bounces 3 --gdb", 0,
+               "{min_bounces = 0, max_bounces = 3}");
+    expect("ls /tmp | grep -c lightcheck-gdb", 1, "0");
+}
+END_TEST
+
 /* The caller dies, even of a signal that nobody can catch: the helper still takes the folder away. */
 START_TEST(test_plugin_killed)
 {
@@ -159,6 +169,7 @@ Suite *lc_suite_plugin(void)
     tcase_add_test(tcase, test_plugin_errors);
     tcase_add_test(tcase, test_plugin_new);
     tcase_add_test(tcase, test_plugin_exports);
+    tcase_add_test(tcase, test_plugin_gdb);
     tcase_add_test(tcase, test_plugin_killed);
     suite_add_tcase(suite, tcase);
     return suite;

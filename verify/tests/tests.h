@@ -39,6 +39,7 @@ Suite *lc_suite_povray(void);
 Suite *lc_suite_verify(void);
 Suite *lc_suite_mutants(void);
 Suite *lc_suite_plugin(void);
+Suite *lc_suite_jail(void);
 Suite *lc_suite_sensitivity(void);
 
 #endif
