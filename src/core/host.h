@@ -67,6 +67,8 @@ typedef struct lc_side {
     lc_texture diffuse; /* albedo, times the lobe's share in a blend */
     lc_rgb mirror;      /* reflectance, times its share */
     double glass;       /* share of the dielectric lobe */
+    lc_rgb glossy;      /* reflectance of the rough mirror's facets, times its share */
+    double alpha;       /* their roughness, in (0, 1]; 0 where there are none */
 } lc_side;
 
 typedef struct lc_material_desc {

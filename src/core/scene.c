@@ -140,6 +140,7 @@ static void find_lobes(lc_scene *scene)
             scene->lobes |= texture_is_black(&m->side[side].diffuse) ? 0 : LC_DIFFUSE;
             scene->lobes |= is_black(m->side[side].mirror) ? 0 : LC_MIRROR;
             scene->lobes |= m->side[side].glass > 0 ? LC_GLASS : 0;
+            scene->lobes |= is_black(m->side[side].glossy) ? 0 : LC_GLOSSY;
         }
     }
 }
@@ -158,6 +159,12 @@ static lc_status check_description(const lc_scene_desc *desc, lc_error *err)
             return lc_fail(err, LC_BAD_INPUT, "%s:%d: to_world is singular or not finite", desc->name, shape->line);
         if (shape->material < 0 || shape->material >= desc->material_count)
             return lc_fail(err, LC_BAD_INPUT, "%s:%d: the shape has no material", desc->name, shape->line);
+        for (int side = 0; side < 2; ++side) {
+            const lc_side *s = &desc->materials[shape->material].side[side];
+            if (!is_black(s->glossy) && !(s->alpha > 0 && s->alpha <= 1))
+                return lc_fail(err, LC_BAD_INPUT, "%s:%d: roughness %g of the shape's material, expected (0, 1]",
+                               desc->name, shape->line, s->alpha);
+        }
     }
     return LC_OK;
 }

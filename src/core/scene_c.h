@@ -72,6 +72,12 @@ typedef struct lc_camera_frame {
 void lc_camera_prepare(lc_camera_frame *frame, const lc_camera_desc *camera, int width, int height);
 lc_ray lc_camera_frame_ray(const lc_camera_frame *frame, double x, double y);
 
+/* glossy.c: a rough mirror of reflectance 1. Unit n on the side of wo, alpha in (0, 1]; value and density in 1/sr. The density also
+ * covers what falls below the horizon, where the value is 0, and so integrates to 1. */
+double lc_glossy_value(lc_vec3 n, lc_vec3 wo, lc_vec3 wi, double alpha);
+double lc_glossy_pdf(lc_vec3 n, lc_vec3 wo, lc_vec3 wi, double alpha);
+lc_vec3 lc_glossy_sample(lc_vec3 n, lc_vec3 wo, double alpha, double u, double v);
+
 /* warp.c */
 void lc_tangents(lc_vec3 n, lc_vec3 *s, lc_vec3 *t);
 lc_vec3 lc_uniform_sphere(double u, double v);

@@ -99,7 +99,7 @@ static int is_front(const lc_hit *hit) { return lc_dot(hit->n, hit->wo) > 0; }
 
 lc_material lc_surface_material(const lc_scene *scene, const lc_hit *hit)
 {
-    lc_material material = {{0, 0, 0}, {0, 0, 0}, 0, 1};
+    lc_material material = {{0, 0, 0}, {0, 0, 0}, 0, 1, {0, 0, 0}, 0};
     if (!hit->valid)
         return material;
     const lc_material_desc *desc = &scene->desc.materials[scene->desc.shapes[hit->shape].material];
@@ -107,6 +107,8 @@ lc_material lc_surface_material(const lc_scene *scene, const lc_hit *hit)
     material.diffuse = texture_on(scene, &side->diffuse, hit->shape, hit->part, hit->p);
     material.mirror = side->mirror;
     material.glass = side->glass;
+    material.glossy = side->glossy;
+    material.alpha = side->alpha;
     if (side->glass > 0)
         material.ior = is_front(hit) ? desc->int_ior / desc->ext_ior : desc->ext_ior / desc->int_ior;
     return material;
@@ -116,9 +118,12 @@ lc_material lc_material_at(const lc_scene *scene, const lc_hit *hit)
 {
     lc_material material = lc_surface_material(scene, hit);
     if (scene->log && hit->valid)
-        lc_log(scene->log, "material: diffuse (%.6g, %.6g, %.6g), mirror (%.6g, %.6g, %.6g), glass %.6g, ior %.6g",
+        lc_log(scene->log,
+               "material: diffuse (%.6g, %.6g, %.6g), mirror (%.6g, %.6g, %.6g), glass %.6g, ior %.6g, glossy (%.6g, "
+               "%.6g, %.6g), alpha %.6g",
                material.diffuse.r, material.diffuse.g, material.diffuse.b, material.mirror.r, material.mirror.g,
-               material.mirror.b, material.glass, material.ior);
+               material.mirror.b, material.glass, material.ior, material.glossy.r, material.glossy.g,
+               material.glossy.b, material.alpha);
     return material;
 }
 

@@ -23,6 +23,7 @@ enum { VALUE_TAGS = sizeof value_tags / sizeof value_tags[0] };
 
 static const char no_spectrum[] = " (Mitsuba tints an emitter's uniform <spectrum> with the colour of daylight)";
 static const char no_texture[] = " (a mirror has one colour here)";
+static const char no_alpha[] = " (a surface has one roughness here)";
 static const char no_weight[] = " (a blend has one weight here)";
 
 /* clang-format off */
@@ -63,6 +64,14 @@ static const struct plugin plugins[] = {
     {"shape", "sphere", {{"center", POINT | VECTOR, NULL}, {"radius", NUMBER, NULL}, TO_WORLD, FLIP}, "bsdf emitter"},
     {"bsdf", "diffuse", {{"reflectance", COLOR | TEXTURE, NULL}}, ""},
     {"bsdf", "conductor", {{"material", STRING, NULL}, {"specular_reflectance", COLOR, no_texture}}, ""},
+    {"bsdf",
+     "roughconductor",
+     {{"material", STRING, NULL},
+      {"specular_reflectance", COLOR, no_texture},
+      {"distribution", STRING, NULL},
+      {"alpha", NUMBER, no_alpha},
+      {"sample_visible", BOOLEAN, NULL}},
+     ""},
     {"bsdf", "dielectric", {{"int_ior", FLOAT | STRING, NULL}, {"ext_ior", FLOAT | STRING, NULL}}, ""},
     {"bsdf", "blendbsdf", {{"weight", NUMBER, no_weight}}, "bsdf"},
     {"bsdf", "twosided", {{NULL, 0, NULL}}, "bsdf"},

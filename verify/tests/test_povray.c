@@ -92,6 +92,9 @@ static const struct {
     {HEAD "<shape type=\"sphere\">" GLASS "</shape></scene>", LC_POV_DIRECT, "through glass"},
     {HEAD "<shape type=\"sphere\">" MIRROR("1") "</shape></scene>", LC_POV_RADIOSITY, "off a mirror"},
     {HEAD "<shape type=\"sphere\"/></scene>", LC_POV_SPECULAR, "diffuse"},
+    {HEAD "<shape type=\"sphere\"><bsdf type=\"roughconductor\"><string name=\"distribution\" value=\"ggx\"/></bsdf>"
+          "</shape></scene>",
+     LC_POV_SPECULAR, "no rough mirror"},
     {HEAD "<shape type=\"rectangle\">" GLASS "</shape></scene>", LC_POV_SPECULAR, "volume"},
     {HEAD "<shape type=\"sphere\">" GLASS "</shape><shape type=\"cube\">" GLASS "</shape></scene>", LC_POV_SPECULAR,
      "other glass"},

@@ -153,6 +153,36 @@ START_TEST(default_materials_are_mitsubas)
 }
 END_TEST
 
+#define ROUGH(properties) \
+    "<bsdf type='roughconductor'><string name='distribution' value='ggx'/>" properties "</bsdf>"
+
+START_TEST(rough_conductors)
+{
+    accept(RECTANGLE(ROUGH("<float name='alpha' value='.3'/><boolean name='sample_visible' value='false'/>"
+                           "<rgb name='specular_reflectance' value='.9 .5 0'/><string name='material' value='none'/>")));
+    color_is(d.materials[0].side[0].glossy, .9, .5, 0);
+    ck_assert_double_eq(d.materials[0].side[0].alpha, .3);
+    color_is(d.materials[0].side[1].glossy, 0, 0, 0);
+    ck_assert_double_eq(d.materials[0].side[1].alpha, 0);
+    color_is(d.materials[0].side[0].mirror, 0, 0, 0);
+    lc_scene_desc_release(&d);
+    /* .25 diffuse + .75 (.4 rough on the front, the same on the back, + .6 rough of the same alpha, on the front) */
+    accept(RECTANGLE(
+        "<bsdf type='blendbsdf'><float name='weight' value='.75'/><bsdf type='diffuse'/><bsdf type='blendbsdf'><float "
+        "name='weight' value='.6'/><bsdf type='twosided'>" ROUGH("") "</bsdf>" ROUGH("") "</bsdf></bsdf>"));
+    color_is(d.materials[0].side[0].glossy, .75, .75, .75);
+    color_is(d.materials[0].side[1].glossy, .3, .3, .3);
+    ck_assert_double_eq(d.materials[0].side[0].alpha, .1);
+    ck_assert_double_eq(d.materials[0].side[1].alpha, .1);
+    lc_scene_desc_release(&d);
+    /* A share of 0 has no roughness to differ in. */
+    accept(RECTANGLE("<bsdf type='blendbsdf'><float name='weight' value='0'/>" ROUGH("") ROUGH(
+        "<float name='alpha' value='.2'/>") "</bsdf>"));
+    ck_assert_double_eq(d.materials[0].side[0].alpha, .1);
+    lc_scene_desc_release(&d);
+}
+END_TEST
+
 #define GRAY(v) "<bsdf type='diffuse'><float name='reflectance' value='" v "'/></bsdf>"
 
 START_TEST(blend_gives_the_weight_to_the_second)
@@ -370,6 +400,12 @@ START_TEST(bad_scenes)
          "both"},
         {SCENE("<emitter type='point'><point name='position' x='0' y='1'/></emitter>"), "all of x, y and z"},
         {RECTANGLE("<bsdf type='conductor'><string name='material' value='Au'/></bsdf>"), "supported: none"},
+        {RECTANGLE("<bsdf type='roughconductor'/>"), "Mitsuba's default is beckmann"},
+        {RECTANGLE(ROUGH("<string name='material' value='Cu'/>")), "supported: none"},
+        {RECTANGLE(ROUGH("<float name='alpha' value='0.005'/>")), "expected 0.01 to 1"},
+        {RECTANGLE(ROUGH("<float name='alpha' value='1.5'/>")), "expected 0.01 to 1"},
+        {RECTANGLE(ROUGH("<float name='alpha_u' value='.1'/>")), "unknown property 'alpha_u'"},
+        {BLEND(W, ROUGH("<float name='alpha' value='.2'/>"), ROUGH("")), "different alpha"},
         {RECTANGLE("<bsdf type='dielectric'><string name='int_ior' value='ice'/></bsdf>"), "unknown material 'ice'"},
         {RECTANGLE(GLASS("0")), "not positive"},
         {BLEND("", GRAY(".1"), GRAY(".1")), "weight"},
@@ -531,6 +567,7 @@ Suite *lc_suite_scene_read(void)
     tcase_add_test(tc, sphere_center_and_radius_come_before_to_world);
     tcase_add_test(tc, default_materials_are_mitsubas);
     tcase_add_test(tc, blend_gives_the_weight_to_the_second);
+    tcase_add_test(tc, rough_conductors);
     tcase_add_test(tc, twosided_has_a_back);
     tcase_add_test(tc, checkerboards);
     tcase_add_test(tc, integrators);

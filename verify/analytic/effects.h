@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* effects.h: what glossy surfaces, lenses and moving shapes do to light, where pen and paper or quadrature can say so. As in analytic.h:
+ * nothing here has seen a ray, all functions are pure and may be called from any thread. */
+#ifndef LC_EFFECTS_H
+#define LC_EFFECTS_H
+
+#include "verify/analytic/analytic.h"
+
+/* ---- rough mirrors ---------------------------------------------------------------------------------------- */
+
+/* The BRDF [1/sr] of mirror facets that reflect everything, with GGX slopes of roughness alpha in (0, 1] about unit n and Smith's separable
+ * masking: D(h) G1(wo) G1(wi) / (4 cos_o cos_i); 0 unless both unit directions lie on the side of n. Source: Walter, Marschner, Li and
+ * Torrance, Microfacet models for refraction through rough surfaces, EGSR 2007, eq. 20, 33, 34. */
+double lc_ggx_value(lc_vec3 n, lc_vec3 wo, lc_vec3 wi, double alpha);
+
+/* Its directional albedo, the integral of f cos_i over the hemisphere, seen at `cosine` in (0, 1]; below 1, since light that facets reflect
+ * onto each other is lost in the model. No elementary form: over facets, where the density is uniform in 1 / (1 + tan^2 / alpha^2) and in
+ * the azimuth, which for each facet angle ends where the light would come from below the horizon. Adaptive quadrature (GSL) to 1e-8.
+ * LC_FAULT when it does not converge. */
+lc_status lc_ggx_albedo(double *albedo, double cosine, double alpha, lc_error *err);
+
+/* The same over cosines in [low, high], 0 < low < high <= 1, as a Chebyshev series: thousands of times faster, to 1e-7 for low >= alpha / 4. */
+enum { LC_GGX_TERMS = 48 };
+typedef struct lc_ggx_series {
+    double low, high, term[LC_GGX_TERMS];
+} lc_ggx_series;
+lc_status lc_ggx_series_fit(lc_ggx_series *out, double low, double high, double alpha, lc_error *err);
+double lc_ggx_series_at(const lc_ggx_series *series, double cosine);
+
+/* ---- quadrature in two dimensions --------------------------------------------------------------------------- */
+
+/* Integrals of `count` <= LC_CUBATURE_MOST functions over [x0, x1] x [y0, y1] at once, each to about `absolute`: 4 x 4 Gauss-Legendre nodes a
+ * box (exact to degree 7), a box cut in four until that changes nothing. Singularities in points and kinks along lines are found; a peak
+ * narrower than the first nodes' distance belongs on a corner of the box. LC_FAULT beyond a million boxes. */
+enum { LC_CUBATURE_MOST = 4 };
+typedef void lc_integrand2(double *values, double x, double y, void *user);
+lc_status lc_cubature(double *out, int count, lc_integrand2 *f, void *user, double x0, double x1, double y0, double y1,
+                      double absolute, lc_error *err);
+
+#endif
