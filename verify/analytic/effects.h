@@ -20,12 +20,17 @@ double lc_ggx_value(lc_vec3 n, lc_vec3 wo, lc_vec3 wi, double alpha);
 lc_status lc_ggx_albedo(double *albedo, double cosine, double alpha, lc_error *err);
 
 /* The same over cosines in [low, high], 0 < low < high <= 1, as a Chebyshev series: thousands of times faster, to 1e-7 for low >= alpha / 4. */
-enum { LC_GGX_TERMS = 48 };
+enum { LC_GGX_TERMS = 32 };
 typedef struct lc_ggx_series {
     double low, high, term[LC_GGX_TERMS];
 } lc_ggx_series;
 lc_status lc_ggx_series_fit(lc_ggx_series *out, double low, double high, double alpha, lc_error *err);
 double lc_ggx_series_at(const lc_ggx_series *series, double cosine);
+
+/* Light of radiance 1 that such a facet surface at p, unit normal n, sends along unit wo from a rectangle centre + x a + y b, |x|, |y| <= 1,
+ * which emits on the side of a x b and which nothing hides: the integral of f cos cos' / d^2 over it, adaptive, to `absolute`. */
+lc_status lc_ggx_rectangle(double *out, lc_vec3 centre, lc_vec3 a, lc_vec3 b, lc_vec3 p, lc_vec3 n, lc_vec3 wo,
+                           double alpha, double absolute, lc_error *err);
 
 /* ---- quadrature in two dimensions --------------------------------------------------------------------------- */
 

@@ -107,3 +107,28 @@ double lc_ggx_series_at(const lc_ggx_series *series, double cosine)
     }
     return x * b - c + series->term[0] / 2;
 }
+
+/* ---- lamps ------------------------------------------------------------------------------------------------------ */
+
+struct seen_lamp {
+    lc_vec3 centre, a, b, p, n, wo;
+    double alpha;
+};
+
+static void lamp_light(double *value, double x, double y, void *user)
+{
+    const struct seen_lamp *lamp = user;
+    lc_vec3 q = lc_add(lamp->centre, lc_add(lc_scale(x, lamp->a), lc_scale(y, lamp->b)));
+    lc_vec3 to = lc_sub(q, lamp->p);
+    double d2 = lc_dot(to, to);
+    lc_vec3 wi = lc_scale(1 / sqrt(d2), to);
+    double facing = fmax(0, -lc_dot(lc_cross(lamp->a, lamp->b), wi)); /* cos' times the area of the unit square's image */
+    value[0] = lc_ggx_value(lamp->n, lamp->wo, wi, lamp->alpha) * fmax(0, lc_dot(lamp->n, wi)) * facing / d2;
+}
+
+lc_status lc_ggx_rectangle(double *out, lc_vec3 centre, lc_vec3 a, lc_vec3 b, lc_vec3 p, lc_vec3 n, lc_vec3 wo,
+                           double alpha, double absolute, lc_error *err)
+{
+    struct seen_lamp lamp = {centre, a, b, p, n, wo, alpha};
+    return lc_cubature(out, 1, lamp_light, &lamp, -1, 1, -1, 1, absolute, err);
+}
