@@ -36,8 +36,7 @@ static lc_rgb one_sample(const lc_scene *scene, const lc_estimator *estimator, c
                          lc_sampler *sampler, const lc_camera_frame *frame, int x, int y)
 {
     lc_hit hit;
-    double dx = lc_next(sampler), dy = lc_next(sampler);
-    lc_ray ray = lc_camera_frame_ray(frame, x + dx, y + dy);
+    lc_ray ray = lc_camera_sample(frame, sampler, x, y);
     lc_camera_see(scene, &ray, &hit);
     lc_sampler_seek(sampler, LC_DIMENSION_ESTIMATOR);
     return estimator->radiance(scene, &ray, &hit, bounces, sampler);

@@ -153,6 +153,11 @@ static lc_status check_description(const lc_scene_desc *desc, lc_error *err)
     if (!finite_affine(&desc->camera.to_world) || !(desc->camera.fov > 0 && desc->camera.fov < 180))
         return lc_fail(err, LC_BAD_INPUT, "%s: the camera's to_world must be finite and its fov between 0 and 180",
                        desc->name);
+    if (!(desc->camera.aperture_radius >= 0 && isfinite(desc->camera.aperture_radius)) ||
+        (desc->camera.aperture_radius > 0 && !(desc->camera.focus_distance > 0 && isfinite(desc->camera.focus_distance))))
+        return lc_fail(err, LC_BAD_INPUT,
+                       "%s: a lens of aperture_radius %g and focus_distance %g, expected finite and positive numbers",
+                       desc->name, desc->camera.aperture_radius, desc->camera.focus_distance);
     for (int i = 0; i < desc->shape_count; ++i) {
         const lc_shape_desc *shape = &desc->shapes[i];
         if (!finite_affine(&shape->to_world) || lc_affine_determinant(&shape->to_world) == 0)

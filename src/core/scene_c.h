@@ -68,9 +68,13 @@ int lc_accel_occluded(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, i
 typedef struct lc_camera_frame {
     lc_vec3 eye, corner, right, down; /* the upper left corner, and one pixel's steps, as seen from the eye */
     double near_clip;
+    lc_vec3 lens_x, lens_y; /* two radii of the lens, across the axis; 0 of a pinhole */
+    double focus;           /* depth of the plane that is sharp; 0 of a pinhole */
 } lc_camera_frame;
 void lc_camera_prepare(lc_camera_frame *frame, const lc_camera_desc *camera, int width, int height);
 lc_ray lc_camera_frame_ray(const lc_camera_frame *frame, double x, double y);
+/* A ray through pixel (x, y), uniform over its square and over the lens. Draws from the camera's dimensions. */
+lc_ray lc_camera_sample(const lc_camera_frame *frame, lc_sampler *sampler, int x, int y);
 
 /* glossy.c: a rough mirror of reflectance 1. Unit n on the side of wo, alpha in (0, 1]; value and density in 1/sr. The density also
  * covers what falls below the horizon, where the value is 0, and so integrates to 1. */

@@ -32,6 +32,13 @@ double lc_ggx_series_at(const lc_ggx_series *series, double cosine);
 lc_status lc_ggx_rectangle(double *out, lc_vec3 centre, lc_vec3 a, lc_vec3 b, lc_vec3 p, lc_vec3 n, lc_vec3 wo,
                            double alpha, double absolute, lc_error *err);
 
+/* ---- lenses -------------------------------------------------------------------------------------------------- */
+
+/* Share in [0, 1] of the disk of `radius` > 0 around (x, y) that a simple polygon covers: the sum over its edges of triangles and sectors
+ * about the centre, exact. What a thin lens of aperture radius a focused at f sees, through one point of the image, of a plane
+ * across its axis at depth z is such a disk, of radius a |1 - z / f|. */
+double lc_disk_polygon_share(const double (*corners)[2], int count, double x, double y, double radius);
+
 /* ---- quadrature in two dimensions --------------------------------------------------------------------------- */
 
 /* Integrals of `count` <= LC_CUBATURE_MOST functions over [x0, x1] x [y0, y1] at once, each to about `absolute`: 4 x 4 Gauss-Legendre nodes a

@@ -50,6 +50,7 @@ const char *const lc_suite_scenes[] = {
     "bright_mirrors",
     "glossy_sky",
     "glossy_lamp",
+    "lens_edge",
     NULL,
 };
 

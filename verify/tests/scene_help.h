@@ -133,6 +133,8 @@ static inline void scale_desc(lc_scene_desc *desc, double scale)
         desc->camera.to_world.m[i][3] *= scale; /* it stays rigid */
     desc->camera.near_clip *= scale;
     desc->camera.far_clip *= scale;
+    desc->camera.aperture_radius *= scale;
+    desc->camera.focus_distance *= scale;
 }
 
 #endif

@@ -78,6 +78,10 @@ START_TEST(export_says_what_each_part_is)
     ck_assert_ptr_nonnull(strstr(text, "emission rgb <1, 2, 3>"));
     free(text);
     free(again);
+    desc.camera.aperture_radius = desc.camera.focus_distance = 1;
+    ck_assert_int_eq(export_text(&text, &desc, &options), LC_BAD_INPUT);
+    ck_assert_ptr_nonnull(strstr(err.text, "a lens"));
+    free(text);
     lc_scene_desc_release(&desc);
 }
 END_TEST

@@ -153,6 +153,25 @@ START_TEST(default_materials_are_mitsubas)
 }
 END_TEST
 
+#define LENS(properties) \
+    "<scene version='3.0.0'><sensor type='thinlens'>" properties FILM "</sensor></scene>"
+#define APERTURE "<float name='aperture_radius' value='0.25'/>"
+#define FOCUS "<float name='focus_distance' value='3'/>"
+
+START_TEST(thin_lens)
+{
+    accept(LENS(APERTURE FOCUS "<float name='fov' value='40'/><float name='near_clip' value='0.5'/>"));
+    ck_assert_double_eq(d.camera.aperture_radius, .25);
+    ck_assert_double_eq(d.camera.focus_distance, 3);
+    ck_assert_double_eq(d.camera.fov, 40);
+    ck_assert_double_eq(d.camera.near_clip, .5);
+    lc_scene_desc_release(&d);
+    accept(SCENE(""));
+    ck_assert_double_eq(d.camera.aperture_radius, 0);
+    lc_scene_desc_release(&d);
+}
+END_TEST
+
 #define ROUGH(properties) \
     "<bsdf type='roughconductor'><string name='distribution' value='ggx'/>" properties "</bsdf>"
 
@@ -400,6 +419,11 @@ START_TEST(bad_scenes)
          "both"},
         {SCENE("<emitter type='point'><point name='position' x='0' y='1'/></emitter>"), "all of x, y and z"},
         {RECTANGLE("<bsdf type='conductor'><string name='material' value='Au'/></bsdf>"), "supported: none"},
+        {LENS(FOCUS), "thinlens without aperture_radius"},
+        {LENS(APERTURE), "thinlens without focus_distance"},
+        {LENS("<float name='aperture_radius' value='0'/>" FOCUS), "aperture_radius 0 is not positive"},
+        {LENS(APERTURE "<float name='focus_distance' value='-1'/>"), "focus_distance -1 is not positive"},
+        {CAMERA(APERTURE, SIZE("8")), "unknown property 'aperture_radius'"},
         {RECTANGLE("<bsdf type='roughconductor'/>"), "Mitsuba's default is beckmann"},
         {RECTANGLE(ROUGH("<string name='material' value='Cu'/>")), "supported: none"},
         {RECTANGLE(ROUGH("<float name='alpha' value='0.005'/>")), "expected 0.01 to 1"},
@@ -568,6 +592,7 @@ Suite *lc_suite_scene_read(void)
     tcase_add_test(tc, default_materials_are_mitsubas);
     tcase_add_test(tc, blend_gives_the_weight_to_the_second);
     tcase_add_test(tc, rough_conductors);
+    tcase_add_test(tc, thin_lens);
     tcase_add_test(tc, twosided_has_a_back);
     tcase_add_test(tc, checkerboards);
     tcase_add_test(tc, integrators);
