@@ -46,6 +46,7 @@ struct lc_accel {
     face_start *starts; /* of each face */
     lc_round *rounds;   /* in unit space */
     int face_count, round_count;
+    int moves; /* 1: geometry has two time steps, and a query its time */
 };
 
 /* What the callbacks for round parts need besides Embree's ray: the ray in double, in unit space. */
@@ -59,8 +60,9 @@ typedef struct query {
     lc_vec3 o, d; /* d unit */
     double t_max; /* of a segment */
     int from, to; /* round parts at its ends, or -1 */
-    int hit;      /* round part hit, */
-    double t;     /* and where */
+    double time;
+    int hit; /* round part hit, */
+    double t; /* and where */
 } query;
 
 /* Nearest t in (0, t_max) where the ray meets the round part, or -1. */
@@ -111,6 +113,12 @@ static double meet_disk(const lc_round *disk, const query *q, int is_end)
 static double meet(const query *q, int part)
 {
     const lc_round *round = &q->accel->rounds[part];
+    lc_round moved;
+    if (q->accel->moves) {
+        moved = *round;
+        moved.o = lc_add(round->o, lc_scale(q->time, round->motion));
+        round = &moved;
+    }
     if (round->is_sphere)
         return meet_sphere(round, q, part == q->from, part == q->to);
     return meet_disk(round, q, part == q->from || part == q->to);
@@ -120,7 +128,8 @@ static void round_bounds(const struct RTCBoundsFunctionArguments *args)
 {
     const lc_round *round = &((const lc_accel *)args->geometryUserPtr)->rounds[args->primID];
     double lower[3], upper[3];
-    const double o[3] = {round->o.x, round->o.y, round->o.z};
+    lc_vec3 at = lc_add(round->o, lc_scale(args->timeStep, round->motion));
+    const double o[3] = {at.x, at.y, at.z};
     const double eu[3] = {round->eu.x, round->eu.y, round->eu.z}, ev[3] = {round->ev.x, round->ev.y, round->ev.z};
     for (int i = 0; i < 3; ++i) {
         double extent = round->is_sphere ? round->radius : hypot(eu[i], ev[i]);
@@ -184,8 +193,11 @@ static void find_unit_space(lc_accel *accel, const lc_scene *scene)
 {
     double lower[3] = {DBL_MAX, DBL_MAX, DBL_MAX}, upper[3] = {-DBL_MAX, -DBL_MAX, -DBL_MAX};
     for (int f = 0; f < scene->face_count; ++f)
-        for (int i = 0; i < 4; ++i)
-            grow(lower, upper, corner(&scene->faces[f], i));
+        for (int i = 0; i < 4; ++i) {
+            lc_vec3 p = corner(&scene->faces[f], i);
+            grow(lower, upper, p);
+            grow(lower, upper, lc_add(p, lc_shape_shift(scene, scene->faces[f].shape, 1)));
+        }
     for (int r = 0; r < scene->round_count; ++r) {
         const lc_round *round = &scene->rounds[r];
         lc_vec3 e = round->is_sphere ? lc_vec(round->radius, round->radius, round->radius)
@@ -193,6 +205,8 @@ static void find_unit_space(lc_accel *accel, const lc_scene *scene)
                                               hypot(round->eu.z, round->ev.z));
         grow(lower, upper, lc_sub(round->o, e));
         grow(lower, upper, lc_add(round->o, e));
+        grow(lower, upper, lc_add(lc_sub(round->o, e), round->motion));
+        grow(lower, upper, lc_add(lc_add(round->o, e), round->motion));
     }
     accel->center = lc_vec(0, 0, 0);
     accel->scale = 1.0;
@@ -208,39 +222,58 @@ static void find_unit_space(lc_accel *accel, const lc_scene *scene)
 }
 
 /* Bound of what rounding does to a point of the face across a plane whose normal has components of these sizes, in unit space. */
-static double rounding_across(const lc_accel *accel, const lc_face *face, double x, double y, double z)
+static double rounding_across(const lc_accel *accel, const lc_face *face, lc_vec3 motion, double x, double y, double z)
 {
     lc_vec3 o = to_unit(accel, face->o);
     const double weight[3] = {x, y, z}, at[3] = {fabs(o.x), fabs(o.y), fabs(o.z)};
     const double extent[3] = {fabs(face->eu.x) + fabs(face->ev.x), fabs(face->eu.y) + fabs(face->ev.y),
                               fabs(face->eu.z) + fabs(face->ev.z)};
+    const double moved[3] = {fabs(motion.x), fabs(motion.y), fabs(motion.z)}; /* adds to |o|; two roundings more */
     double sum = 0.0;
     for (int i = 0; i < 3; ++i)
-        sum += weight[i] * (at[i] + 3 * accel->scale * extent[i]);
+        sum += weight[i] * (at[i] + 3 * accel->scale * (extent[i] + moved[i]));
     return SAFETY * sum + LEAST_OFFSET;
 }
 
-static face_start find_start(const lc_accel *accel, const lc_face *face)
+static face_start find_start(const lc_accel *accel, const lc_face *face, lc_vec3 motion)
 {
     lc_vec3 n = face->n;
-    double edge = 4 * rounding_across(accel, face, 1, 1, 1) / accel->scale; /* the neighbour may stand at any angle */
+    double edge = 4 * rounding_across(accel, face, motion, 1, 1, 1) / accel->scale; /* the neighbour may stand at any angle */
     face_start start;
-    start.offset = rounding_across(accel, face, fabs(n.x), fabs(n.y), fabs(n.z));
+    start.offset = rounding_across(accel, face, motion, fabs(n.x), fabs(n.y), fabs(n.z));
     start.u = fmax(0.0, 1.0 - edge * lc_length(face->du));
     start.v = fmax(0.0, 1.0 - edge * lc_length(face->dv));
     return start;
+}
+
+/* The faces at time 1; Embree moves them straight and evenly. */
+static void add_last_step(const lc_accel *accel, const lc_scene *scene, RTCGeometry geometry)
+{
+    size_t count = (size_t)scene->face_count;
+    float(*vertices)[3] =
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 1, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 4 * count);
+    for (size_t v = 0; vertices && v < 4 * count; ++v) {
+        const lc_face *face = &scene->faces[v / 4];
+        lc_vec3 p = lc_add(corner(face, (int)(v % 4)), lc_shape_shift(scene, face->shape, 1));
+        p = to_unit(accel, p);
+        vertices[v][0] = (float)p.x;
+        vertices[v][1] = (float)p.y;
+        vertices[v][2] = (float)p.z;
+    }
 }
 
 static void add_faces(lc_accel *accel, const lc_scene *scene)
 {
     RTCGeometry geometry = rtcNewGeometry(accel->device, RTC_GEOMETRY_TYPE_QUAD);
     size_t count = (size_t)scene->face_count;
+    rtcSetGeometryTimeStepCount(geometry, scene->moves ? 2 : 1);
     accel->vertices =
         rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 4 * count);
     accel->quads =
         rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, 4 * sizeof(unsigned), count);
     for (size_t f = 0; accel->vertices && accel->quads && f < count; ++f) {
-        accel->starts[f] = find_start(accel, &scene->faces[f]);
+        lc_vec3 motion = lc_shape_shift(scene, scene->faces[f].shape, 1);
+        accel->starts[f] = find_start(accel, &scene->faces[f], motion);
         for (unsigned i = 0; i < 4; ++i) {
             lc_vec3 p = to_unit(accel, corner(&scene->faces[f], (int)i));
             float *vertex = accel->vertices[4 * f + i];
@@ -250,6 +283,8 @@ static void add_faces(lc_accel *accel, const lc_scene *scene)
             accel->quads[f][i] = (unsigned)(4 * f + i);
         }
     }
+    if (scene->moves)
+        add_last_step(accel, scene, geometry);
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(accel->scene, geometry, FACES);
     rtcReleaseGeometry(geometry);
@@ -262,12 +297,14 @@ static void add_rounds(lc_accel *accel, const lc_scene *scene)
         *round = scene->rounds[r];
         round->o = to_unit(accel, round->o);
         round->radius *= accel->scale;
+        round->motion = lc_scale(accel->scale, round->motion);
         round->eu = lc_scale(accel->scale, round->eu);
         round->ev = lc_scale(accel->scale, round->ev);
         round->du = lc_scale(1.0 / accel->scale, round->du);
         round->dv = lc_scale(1.0 / accel->scale, round->dv);
     }
     RTCGeometry geometry = rtcNewGeometry(accel->device, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryTimeStepCount(geometry, scene->moves ? 2 : 1);
     rtcSetGeometryUserPrimitiveCount(geometry, (unsigned)scene->round_count);
     rtcSetGeometryUserData(geometry, accel);
     rtcSetGeometryBoundsFunction(geometry, round_bounds, NULL);
@@ -286,6 +323,7 @@ lc_status lc_accel_build(lc_accel **out, const lc_scene *scene, lc_error *err)
         return lc_fail(err, LC_FAULT, "out of memory for the accelerator");
     accel->face_count = scene->face_count;
     accel->round_count = scene->round_count;
+    accel->moves = scene->moves;
     accel->starts = calloc((size_t)scene->face_count + 1, sizeof *accel->starts);
     accel->rounds = calloc((size_t)scene->round_count + 1, sizeof *accel->rounds);
     /* One thread: the tree must not depend on who built which branch first. */
@@ -326,7 +364,8 @@ void lc_accel_free(lc_accel *accel)
 
 /* ---- queries -------------------------------------------------------------------------------------------- */
 
-static void start_query(query *q, const lc_accel *accel, lc_vec3 o, lc_vec3 d, double t_max, int from_part, int to_part)
+static void start_query(query *q, const lc_accel *accel, lc_vec3 o, lc_vec3 d, double t_max, double time, int from_part,
+                        int to_part)
 {
 #if LC_EMBREE == 4
     rtcInitRayQueryContext(&q->base);
@@ -337,6 +376,7 @@ static void start_query(query *q, const lc_accel *accel, lc_vec3 o, lc_vec3 d, d
     q->o = o;
     q->d = d;
     q->t_max = t_max;
+    q->time = time;
     q->from = from_part >= accel->face_count ? from_part - accel->face_count : -1;
     q->to = to_part >= accel->face_count ? to_part - accel->face_count : -1;
     q->hit = -1;
@@ -344,13 +384,16 @@ static void start_query(query *q, const lc_accel *accel, lc_vec3 o, lc_vec3 d, d
 }
 
 /* Where Embree's ray starts (or ends) instead of at `p` [unit space] on the part: off a face, towards `to`, and not at its very edge. */
-static lc_vec3 off_face(const lc_accel *accel, const lc_scene *scene, lc_vec3 p, int part, lc_vec3 to, double extra)
+static lc_vec3 off_face(const lc_accel *accel, const lc_scene *scene, lc_vec3 p, double time, int part, lc_vec3 to,
+                        double extra)
 {
     if (part < 0 || part >= accel->face_count)
         return p;
     const face_start *start = &accel->starts[part];
     const lc_face *face = &scene->faces[part];
     lc_vec3 r = lc_sub(p, to_unit(accel, face->o)); /* du, dv and eu, ev are in world space: the scales cancel */
+    if (scene->moves)
+        r = lc_sub(r, lc_scale(accel->scale, lc_shape_shift(scene, face->shape, time)));
     double u = lc_dot(face->du, r), v = lc_dot(face->dv, r), most_u = start->u * accel->scale,
            most_v = start->v * accel->scale;
     if (fabs(u) > most_u)
@@ -410,6 +453,11 @@ static void finish_round(const lc_round *round, lc_vec3 o, lc_vec3 d, double t, 
     hit->shape = round->shape;
 }
 
+static lc_vec3 shift_of(const lc_scene *scene, int shape, double time)
+{
+    return scene->moves ? lc_shape_shift(scene, shape, time) : lc_vec(0, 0, 0);
+}
+
 int lc_accel_intersect(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, lc_vec3 d, double time, int from_part,
                        lc_hit *hit)
 {
@@ -424,9 +472,9 @@ int lc_accel_intersect(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, 
         start = lc_add(start, lc_scale(skipped, d));
     }
     query q;
-    start_query(&q, accel, start, d, INFINITY, from_part, -1);
+    start_query(&q, accel, start, d, INFINITY, time, from_part, -1);
     struct RTCRayHit rayhit;
-    fill_ray(&rayhit.ray, off_face(accel, scene, start, from_part, d, 0.0), d, INFINITY, time);
+    fill_ray(&rayhit.ray, off_face(accel, scene, start, time, from_part, d, 0.0), d, INFINITY, time);
     rayhit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     rayhit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
 #if LC_EMBREE == 4
@@ -439,12 +487,16 @@ int lc_accel_intersect(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, 
 #endif
     if (rayhit.hit.geomID == FACES) {
         hit->part = (int)rayhit.hit.primID;
-        finish_face(&scene->faces[hit->part], o, d, hit);
+        lc_vec3 shift = shift_of(scene, scene->faces[hit->part].shape, time);
+        finish_face(&scene->faces[hit->part], lc_sub(o, shift), d, hit);
+        hit->p = lc_add(hit->p, shift);
         return 1;
     }
     if (rayhit.hit.geomID == ROUNDS) {
         hit->part = accel->face_count + q.hit;
-        finish_round(&scene->rounds[q.hit], o, d, (q.t + skipped) / accel->scale, hit);
+        lc_vec3 shift = shift_of(scene, scene->rounds[q.hit].shape, time);
+        finish_round(&scene->rounds[q.hit], lc_sub(o, shift), d, (q.t + skipped) / accel->scale, hit);
+        hit->p = lc_add(hit->p, shift);
         return 1;
     }
     return 0;
@@ -457,20 +509,20 @@ int lc_accel_occluded(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, i
     struct RTCRay ray;
     lc_vec3 a = to_unit(accel, o);
     if (to_infinity) {
-        start_query(&q, accel, a, target, INFINITY, from_part, -1);
-        fill_ray(&ray, off_face(accel, scene, a, from_part, target, 0.0), target, INFINITY, time);
+        start_query(&q, accel, a, target, INFINITY, time, from_part, -1);
+        fill_ray(&ray, off_face(accel, scene, a, time, from_part, target, 0.0), target, INFINITY, time);
     } else {
         lc_vec3 b = to_unit(accel, target), along = lc_sub(b, a);
         double length = lc_length(along);
         if (!(length > 0))
             return 0;
-        start_query(&q, accel, a, lc_scale(1.0 / length, along), length, from_part, to_part);
+        start_query(&q, accel, a, lc_scale(1.0 / length, along), length, time, from_part, to_part);
         /* Embree reaches the end as o + d, each rounded: that, too, must stay on the near side of the light. */
         double rounding = 2 * 0x1p-24 *
                           (fabs(to_n.x) * (fabs(a.x) + fabs(along.x)) + fabs(to_n.y) * (fabs(a.y) + fabs(along.y)) +
                            fabs(to_n.z) * (fabs(a.z) + fabs(along.z)));
-        lc_vec3 start = off_face(accel, scene, a, from_part, along, 0.0);
-        lc_vec3 end = off_face(accel, scene, b, to_part, lc_neg(along), rounding);
+        lc_vec3 start = off_face(accel, scene, a, time, from_part, along, 0.0);
+        lc_vec3 end = off_face(accel, scene, b, time, to_part, lc_neg(along), rounding);
         fill_ray(&ray, start, lc_sub(end, start), 1.0, time);
     }
 #if LC_EMBREE == 4

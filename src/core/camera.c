@@ -33,6 +33,7 @@ void lc_camera_prepare(lc_camera_frame *frame, const lc_camera_desc *camera, int
     frame->lens_x = lc_affine_vector(&camera->to_world, lc_vec(camera->aperture_radius, 0, 0));
     frame->lens_y = lc_affine_vector(&camera->to_world, lc_vec(0, camera->aperture_radius, 0));
     frame->focus = camera->aperture_radius > 0 ? camera->focus_distance : 0;
+    frame->moves = 0;
 }
 
 lc_ray lc_camera_frame_ray(const lc_camera_frame *frame, double x, double y)
@@ -62,10 +63,17 @@ static lc_ray lens_ray(const lc_camera_frame *frame, double x, double y, double 
 lc_ray lc_camera_sample(const lc_camera_frame *frame, lc_sampler *sampler, int x, int y)
 {
     double dx = lc_next(sampler), dy = lc_next(sampler);
-    if (!(frame->focus > 0))
-        return lc_camera_frame_ray(frame, x + dx, y + dy);
-    double u = lc_next(sampler), v = lc_next(sampler);
-    return lens_ray(frame, x + dx, y + dy, u, v);
+    lc_ray ray;
+    if (frame->focus > 0) {
+        double u = lc_next(sampler), v = lc_next(sampler);
+        ray = lens_ray(frame, x + dx, y + dy, u, v);
+    } else
+        ray = lc_camera_frame_ray(frame, x + dx, y + dy);
+    if (frame->moves) { /* 24 bits: Embree's float then means the same moment */
+        lc_sampler_seek(sampler, LC_DIMENSION_TIME);
+        ray.time = floor(lc_next(sampler) * 0x1p24) * 0x1p-24;
+    }
+    return ray;
 }
 
 lc_ray lc_camera_ray(const lc_camera_desc *camera, int width, int height, double x, double y)

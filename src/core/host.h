@@ -84,7 +84,8 @@ typedef enum lc_shape_kind { LC_RECTANGLE, LC_DISK, LC_CUBE, LC_SPHERE } lc_shap
 
 typedef struct lc_shape_desc {
     lc_shape_kind kind;
-    lc_affine to_world; /* a sphere's: rotation, uniform scale and translation only */
+    lc_affine to_world; /* a sphere's: rotation, uniform scale and translation only; of a moving shape, at time 0 */
+    lc_vec3 motion;     /* how far it has moved, straight and evenly, at time 1 [m] */
     int flip_normals;
     int material;        /* index into materials */
     int emits;           /* 1: an area light, */

@@ -176,6 +176,7 @@ lc_status lc_render(lc_film *film, const lc_scene *scene, const lc_estimator *es
              .lock = PTHREAD_MUTEX_INITIALIZER,
              .next_tile = o.shard};
     lc_camera_prepare(&j.frame, &scene->desc.camera, film->width, film->height);
+    j.frame.moves = scene->moves;
     j.tiles = j.tiles_x * ((film->height + LC_TILE - 1) / LC_TILE);
 
     long cores = o.threads > 0 ? o.threads : sysconf(_SC_NPROCESSORS_ONLN);
@@ -219,6 +220,7 @@ lc_rgb lc_replay(lc_scene *scene, const lc_estimator *estimator, const lc_render
     lc_replay_begin();
     lc_camera_frame frame;
     lc_camera_prepare(&frame, &scene->desc.camera, width, height);
+    frame.moves = scene->moves;
     lc_rgb radiance = one_sample(scene, estimator, &bounces, &sampler, &frame, x, y);
     scene->log = NULL;
     return radiance;

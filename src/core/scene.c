@@ -70,6 +70,7 @@ static void make_round(lc_round *round, const lc_shape_desc *desc, int shape)
     round->ev = lc_affine_vector(m, lc_vec(0, 1, 0));
     round->sign = desc->flip_normals ? -1.0 : 1.0;
     round->shape = shape;
+    round->motion = desc->motion;
     if (round->is_sphere) {
         round->radius = lc_length(round->eu); /* not cbrt(det), which rounds otherwise at another scale */
         round->n = lc_affine_vector(m, lc_vec(0, 0, 1));
@@ -86,6 +87,7 @@ static void make_shapes(lc_scene *scene)
     for (int i = 0; i < scene->desc.shape_count; ++i) {
         const lc_shape_desc *desc = &scene->desc.shapes[i];
         lc_shape *shape = &scene->shapes[i];
+        scene->moves |= lc_length(desc->motion) > 0;
         shape->is_round = desc->kind == LC_DISK || desc->kind == LC_SPHERE;
         shape->first = shape->is_round ? scene->round_count : scene->face_count;
         shape->count = desc->kind == LC_CUBE ? 6 : 1;
@@ -162,6 +164,8 @@ static lc_status check_description(const lc_scene_desc *desc, lc_error *err)
         const lc_shape_desc *shape = &desc->shapes[i];
         if (!finite_affine(&shape->to_world) || lc_affine_determinant(&shape->to_world) == 0)
             return lc_fail(err, LC_BAD_INPUT, "%s:%d: to_world is singular or not finite", desc->name, shape->line);
+        if (!isfinite(lc_length(shape->motion)))
+            return lc_fail(err, LC_BAD_INPUT, "%s:%d: motion is not finite", desc->name, shape->line);
         if (shape->material < 0 || shape->material >= desc->material_count)
             return lc_fail(err, LC_BAD_INPUT, "%s:%d: the shape has no material", desc->name, shape->line);
         for (int side = 0; side < 2; ++side) {

@@ -104,7 +104,7 @@ lc_material lc_surface_material(const lc_scene *scene, const lc_hit *hit)
         return material;
     const lc_material_desc *desc = &scene->desc.materials[scene->desc.shapes[hit->shape].material];
     const lc_side *side = &desc->side[is_front(hit) ? 0 : 1];
-    material.diffuse = texture_on(scene, &side->diffuse, hit->shape, hit->part, hit->p);
+    material.diffuse = texture_on(scene, &side->diffuse, hit->shape, hit->part, lc_rest_point(scene, hit));
     material.mirror = side->mirror;
     material.glass = side->glass;
     material.glossy = side->glossy;
@@ -127,7 +127,7 @@ lc_material lc_material_at(const lc_scene *scene, const lc_hit *hit)
     return material;
 }
 
-/* Emitted by the front of the shape at p. */
+/* Emitted by the front of the shape at p, where p is at time 0. */
 lc_rgb lc_shape_radiance(const lc_scene *scene, int shape, int part, lc_vec3 p)
 {
     const lc_shape_desc *desc = &scene->desc.shapes[shape];
@@ -140,7 +140,7 @@ lc_rgb lc_emission(const lc_scene *scene, const lc_hit *hit)
     if (!hit->valid)
         radiance = scene->desc.has_sky ? scene->desc.sky : lc_black();
     else if (is_front(hit))
-        radiance = lc_shape_radiance(scene, hit->shape, hit->part, hit->p);
+        radiance = lc_shape_radiance(scene, hit->shape, hit->part, lc_rest_point(scene, hit));
     if (scene->log)
         lc_log(scene->log, "emission: (%.9g, %.9g, %.9g) W sr^-1 m^-2", radiance.r, radiance.g, radiance.b);
     return radiance;

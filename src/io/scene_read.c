@@ -55,7 +55,8 @@ static int read_shape(struct reader *r, struct node *node)
         if (scene_type_is(node, kinds[i].type))
             shape->kind = kinds[i].kind;
     shape->radiance = lc_texture_constant(lc_black());
-    if (!read_geometry(r, node, shape) || !scene_only_child(r, node, "bsdf", &bsdf) ||
+    const struct node *motion = scene_property(node, "motion");
+    if (!read_geometry(r, node, shape) || (motion && !scene_vector(r, motion, &shape->motion)) || !scene_only_child(r, node, "bsdf", &bsdf) ||
         !scene_only_child(r, node, "emitter", &emitter))
         return 0;
     if (emitter) {

@@ -27,6 +27,7 @@ static const char no_alpha[] = " (a surface has one roughness here)";
 static const char no_weight[] = " (a blend has one weight here)";
 
 /* clang-format off */
+#define MOTION {"motion", POINT | VECTOR, NULL}
 #define TO_WORLD {"to_world", TRANSFORM, NULL}
 #define FLIP {"flip_normals", BOOLEAN, NULL}
 #define HIDE {"hide_emitters", BOOLEAN, NULL}
@@ -68,10 +69,13 @@ static const struct plugin plugins[] = {
     {"sampler", "multijitter", SAMPLER, ""},
     {"sampler", "orthogonal", SAMPLER, ""},
     {"sampler", "ldsampler", SAMPLER, ""},
-    {"shape", "rectangle", {TO_WORLD, FLIP}, "bsdf emitter"},
-    {"shape", "disk", {TO_WORLD, FLIP}, "bsdf emitter"},
-    {"shape", "cube", {TO_WORLD, FLIP}, "bsdf emitter"},
-    {"shape", "sphere", {{"center", POINT | VECTOR, NULL}, {"radius", NUMBER, NULL}, TO_WORLD, FLIP}, "bsdf emitter"},
+    {"shape", "rectangle", {TO_WORLD, FLIP, MOTION}, "bsdf emitter"},
+    {"shape", "disk", {TO_WORLD, FLIP, MOTION}, "bsdf emitter"},
+    {"shape", "cube", {TO_WORLD, FLIP, MOTION}, "bsdf emitter"},
+    {"shape",
+     "sphere",
+     {{"center", POINT | VECTOR, NULL}, {"radius", NUMBER, NULL}, TO_WORLD, FLIP, MOTION},
+     "bsdf emitter"},
     {"bsdf", "diffuse", {{"reflectance", COLOR | TEXTURE, NULL}}, ""},
     {"bsdf", "conductor", {{"material", STRING, NULL}, {"specular_reflectance", COLOR, no_texture}}, ""},
     {"bsdf",

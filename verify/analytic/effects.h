@@ -39,6 +39,24 @@ lc_status lc_ggx_rectangle(double *out, lc_vec3 centre, lc_vec3 a, lc_vec3 b, lc
  * across its axis at depth z is such a disk, of radius a |1 - z / f|. */
 double lc_disk_polygon_share(const double (*corners)[2], int count, double x, double y, double radius);
 
+/* ---- motion -------------------------------------------------------------------------------------------------- */
+
+/* Times from..to in [0, 1] at which a line meets a convex shape that moves straight by `motion` until time 1; from > to where it never does.
+ * The line p + s d has no ends; unit d is not parallel to a flat shape. Rectangle: centre + x a + y b, |x|, |y| <= 1; disk: x^2 + y^2 <= 1.
+ * Closed forms: in the shape's own coordinates a point that moves evenly enters and leaves it once. */
+typedef struct lc_span {
+    double from, to;
+} lc_span;
+lc_span lc_rectangle_span(lc_vec3 centre, lc_vec3 a, lc_vec3 b, lc_vec3 motion, lc_vec3 p, lc_vec3 d);
+lc_span lc_disk_span(lc_vec3 centre, lc_vec3 a, lc_vec3 b, lc_vec3 motion, lc_vec3 p, lc_vec3 d);
+lc_span lc_sphere_span(lc_vec3 centre, double radius, lc_vec3 motion, lc_vec3 p, lc_vec3 d);
+/* Length of the union. */
+double lc_spans_length(const lc_span *spans, int count);
+
+/* lc_direct_irradiance() averaged over time, at a point at rest: eight Gauss-Legendre nodes, to about 1e-9 where no lamp comes close or crosses a
+ * horizon and no shadow passes. */
+lc_status lc_moving_irradiance(lc_rgb *out, const lc_scene_desc *desc, lc_vec3 p, lc_vec3 n, lc_error *err);
+
 /* ---- quadrature in two dimensions --------------------------------------------------------------------------- */
 
 /* Integrals of `count` <= LC_CUBATURE_MOST functions over [x0, x1] x [y0, y1] at once, each to about `absolute`: 4 x 4 Gauss-Legendre nodes a

@@ -47,7 +47,7 @@ static lc_status plan(const lc_check *self, lc_claims *claims, const lc_scene *s
     /* Black by both, or without variance: analytic and furnace hold these exactly; effects holds each estimator. Where emitters touch, sampling them by area has infinite
      * variance. */
     static const char *const never[] = {"light_behind", "light_below", "furnace_sphere", "thermal_furnace",
-                                        "mirror_corridor", "glossy_sky", "glossy_lamp", "lens_edge"};
+                                        "mirror_corridor", "glossy_sky", "glossy_lamp", "lens_edge", "motion_flight", "motion_shadow", "motion_lamp"};
     for (size_t i = 0; i < sizeof never / sizeof never[0]; ++i)
         if (strcmp(desc->name, never[i]) == 0)
             return LC_OK;

@@ -51,6 +51,9 @@ const char *const lc_suite_scenes[] = {
     "glossy_sky",
     "glossy_lamp",
     "lens_edge",
+    "motion_flight",
+    "motion_shadow",
+    "motion_lamp",
     NULL,
 };
 

@@ -62,6 +62,8 @@ static lc_status check_shape(const lc_pov_writer *w, const lc_shape_desc *shape,
         checkered |= m->side[i].diffuse.is_checkerboard;
         glossy |= !lc_pov_is_black(m->side[i].glossy);
     }
+    if (lc_length(shape->motion) > 0)
+        return refuse(w, shape, "it moves: POV-Ray knows motion from frame to frame only", err);
     if (glossy)
         return refuse(w, shape, "POV-Ray's reflections are sharp: it has no rough mirror", err);
     if ((specular || glass) && w->options->mode != LC_POV_SPECULAR)

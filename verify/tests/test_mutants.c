@@ -67,6 +67,9 @@ static const struct row {
     {"glossy_no_jacobian", "effects", "glossy_lamp"},
     {"glossy_no_cosine", "effects", "glossy_lamp"},
     {"glossy_one_direction", "effects", "glossy_lamp"},
+    {"light_lamp_at_rest", "effects", "motion_lamp"},
+    {"light_shadow_at_rest", "effects", "motion_shadow"},
+    {"hemisphere_no_time", "effects", "motion_lamp"},
 };
 enum { ROWS = sizeof rows / sizeof rows[0] };
 

@@ -96,6 +96,7 @@ static const struct {
     {HEAD "<shape type=\"sphere\">" GLASS "</shape></scene>", LC_POV_DIRECT, "through glass"},
     {HEAD "<shape type=\"sphere\">" MIRROR("1") "</shape></scene>", LC_POV_RADIOSITY, "off a mirror"},
     {HEAD "<shape type=\"sphere\"/></scene>", LC_POV_SPECULAR, "diffuse"},
+    {HEAD "<shape type=\"sphere\"><vector name=\"motion\" value=\"1 0 0\"/></shape></scene>", LC_POV_DIRECT, "moves"},
     {HEAD "<shape type=\"sphere\"><bsdf type=\"roughconductor\"><string name=\"distribution\" value=\"ggx\"/></bsdf>"
           "</shape></scene>",
      LC_POV_SPECULAR, "no rough mirror"},

@@ -158,6 +158,17 @@ END_TEST
 #define APERTURE "<float name='aperture_radius' value='0.25'/>"
 #define FOCUS "<float name='focus_distance' value='3'/>"
 
+START_TEST(motion_of_shapes)
+{
+    accept(SCENE("<shape type='sphere'><vector name='motion' value='1 -2 .5'/></shape><shape type='disk'/>"));
+    vec_is(d.shapes[0].motion, 1, -2, .5);
+    vec_is(d.shapes[1].motion, 0, 0, 0);
+    lc_scene_desc_release(&d);
+    refuse(SCENE("<shape type='disk'><float name='motion' value='1'/></shape>"), "expected point, vector");
+    refuse(SCENE("<shape type='disk'><vector name='motion' x='1'/></shape>"), "all of x, y and z");
+}
+END_TEST
+
 START_TEST(thin_lens)
 {
     accept(LENS(APERTURE FOCUS "<float name='fov' value='40'/><float name='near_clip' value='0.5'/>"));
@@ -593,6 +604,7 @@ Suite *lc_suite_scene_read(void)
     tcase_add_test(tc, blend_gives_the_weight_to_the_second);
     tcase_add_test(tc, rough_conductors);
     tcase_add_test(tc, thin_lens);
+    tcase_add_test(tc, motion_of_shapes);
     tcase_add_test(tc, twosided_has_a_back);
     tcase_add_test(tc, checkerboards);
     tcase_add_test(tc, integrators);
