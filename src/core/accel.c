@@ -21,7 +21,7 @@
 #include <embree3/rtcore.h>
 #endif
 
-#include "core/scene_c.h"
+#include "core/round_c.h"
 
 enum { FACES = 0, ROUNDS = 1 }; /* Embree's geometry IDs */
 
@@ -66,50 +66,6 @@ typedef struct query {
 } query;
 
 /* Nearest t in (0, t_max) where the ray meets the round part, or -1. */
-static double meet_sphere(const lc_round *sphere, const query *q, int is_from, int is_to)
-{
-    lc_vec3 oc = lc_sub(q->o, sphere->o);
-    double b = lc_dot(oc, q->d);
-    double root[2]; /* in increasing order */
-    if (is_from) {  /* one root is 0 and does not count */
-        root[0] = -1.0;
-        root[1] = -2.0 * b;
-    } else {
-        double r = sphere->radius;
-        lc_vec3 l = lc_sub(oc, lc_scale(b, q->d)); /* from the center to the ray's nearest point */
-        double discriminant = r * r - lc_dot(l, l);
-        if (discriminant < 0)
-            return -1.0;
-        double far = -b - copysign(sqrt(discriminant), b);
-        double near = far != 0 ? (lc_dot(oc, oc) - r * r) / far : 0.0;
-        root[0] = fmin(near, far);
-        root[1] = fmax(near, far);
-    }
-    if (is_to) { /* one root is t_max and does not count */
-        int end = fabs(root[0] - q->t_max) < fabs(root[1] - q->t_max) ? 0 : 1;
-        root[end] = -1.0;
-    }
-    for (int i = 0; i < 2; ++i)
-        if (root[i] > 0 && root[i] < q->t_max)
-            return root[i];
-    return -1.0;
-}
-
-static double meet_disk(const lc_round *disk, const query *q, int is_end)
-{
-    if (is_end)
-        return -1.0;
-    double cos_theta = lc_dot(disk->n, q->d);
-    if (cos_theta == 0)
-        return -1.0;
-    double t = lc_dot(disk->n, lc_sub(disk->o, q->o)) / cos_theta;
-    if (!(t > 0 && t < q->t_max))
-        return -1.0;
-    lc_vec3 r = lc_sub(lc_add(q->o, lc_scale(t, q->d)), disk->o);
-    double u = lc_dot(disk->du, r), v = lc_dot(disk->dv, r);
-    return u * u + v * v <= 1.0 ? t : -1.0;
-}
-
 static double meet(const query *q, int part)
 {
     const lc_round *round = &q->accel->rounds[part];
@@ -119,9 +75,7 @@ static double meet(const query *q, int part)
         moved.o = lc_add(round->o, lc_scale(q->time, round->motion));
         round = &moved;
     }
-    if (round->is_sphere)
-        return meet_sphere(round, q, part == q->from, part == q->to);
-    return meet_disk(round, q, part == q->from || part == q->to);
+    return meet_round(round, q->o, q->d, q->t_max, part == q->from, part == q->to);
 }
 
 static void round_bounds(const struct RTCBoundsFunctionArguments *args)
@@ -453,11 +407,6 @@ static void finish_round(const lc_round *round, lc_vec3 o, lc_vec3 d, double t, 
     hit->shape = round->shape;
 }
 
-static lc_vec3 shift_of(const lc_scene *scene, int shape, double time)
-{
-    return scene->moves ? lc_shape_shift(scene, shape, time) : lc_vec(0, 0, 0);
-}
-
 int lc_accel_intersect(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, lc_vec3 d, double time, int from_part,
                        lc_hit *hit)
 {
@@ -485,21 +434,22 @@ int lc_accel_intersect(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, 
 #else
     rtcIntersect1(accel->scene, &q.base, &rayhit);
 #endif
-    if (rayhit.hit.geomID == FACES) {
-        hit->part = (int)rayhit.hit.primID;
-        lc_vec3 shift = shift_of(scene, scene->faces[hit->part].shape, time);
-        finish_face(&scene->faces[hit->part], lc_sub(o, shift), d, hit);
-        hit->p = lc_add(hit->p, shift);
-        return 1;
+    int is_face = rayhit.hit.geomID == FACES;
+    if (!is_face && rayhit.hit.geomID != ROUNDS)
+        return 0;
+    lc_vec3 rest = o, shift = lc_vec(0, 0, 0); /* where the ray is when the shape is moved back to time 0 */
+    hit->part = is_face ? (int)rayhit.hit.primID : accel->face_count + q.hit;
+    if (scene->moves) {
+        shift = lc_shape_shift(scene, is_face ? scene->faces[hit->part].shape : scene->rounds[q.hit].shape, time);
+        rest = lc_sub(o, shift);
     }
-    if (rayhit.hit.geomID == ROUNDS) {
-        hit->part = accel->face_count + q.hit;
-        lc_vec3 shift = shift_of(scene, scene->rounds[q.hit].shape, time);
-        finish_round(&scene->rounds[q.hit], lc_sub(o, shift), d, (q.t + skipped) / accel->scale, hit);
+    if (is_face)
+        finish_face(&scene->faces[hit->part], rest, d, hit);
+    else
+        finish_round(&scene->rounds[q.hit], rest, d, (q.t + skipped) / accel->scale, hit);
+    if (scene->moves)
         hit->p = lc_add(hit->p, shift);
-        return 1;
-    }
-    return 0;
+    return 1;
 }
 
 int lc_accel_occluded(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, int from_part, lc_vec3 target,

@@ -41,7 +41,8 @@ enum { DIFFUSE, GLOSSY, MIRROR, GLASS_REFLECTS, GLASS_TRANSMITS, WAYS };
  * below 1. */
 static double reflectance(const lc_material *m)
 {
-    return lc_rgb_max(m->diffuse) + lc_rgb_max(m->glossy) + lc_rgb_max(m->mirror) + m->glass;
+    double glossy = m->alpha > 0 ? lc_rgb_max(m->glossy) : 0; /* few have it, and a maximum is a call */
+    return lc_rgb_max(m->diffuse) + glossy + lc_rgb_max(m->mirror) + m->glass;
 }
 
 /* The share of each way in that. */
@@ -49,7 +50,7 @@ static void weigh(double weight[WAYS], const lc_material *m, double cos_o)
 {
     double fresnel = m->glass > 0 ? lc_fresnel(cos_o, m->ior) : 0;
     weight[DIFFUSE] = lc_rgb_max(m->diffuse);
-    weight[GLOSSY] = lc_rgb_max(m->glossy);
+    weight[GLOSSY] = m->alpha > 0 ? lc_rgb_max(m->glossy) : 0;
     weight[MIRROR] = lc_rgb_max(m->mirror);
     weight[GLASS_REFLECTS] = m->glass * fresnel;
     weight[GLASS_TRANSMITS] = m->glass * (1 - fresnel);
@@ -60,7 +61,7 @@ static lc_rgb finite_value(const lc_material *m, const lc_hit *hit, lc_vec3 wi)
     if (!(lc_dot(hit->n, wi) * lc_dot(hit->n, hit->wo) > 0))
         return lc_black();
     lc_rgb value = lc_rgb_scale(LC_INV_PI, m->diffuse);
-    if (!(lc_rgb_max(m->glossy) > 0))
+    if (!(m->alpha > 0))
         return value;
     double glossy = lc_glossy_value(lc_facing(hit->n, hit->wo), hit->wo, wi, m->alpha);
     return lc_rgb_add(value, lc_rgb_scale(glossy, m->glossy));
@@ -68,11 +69,11 @@ static lc_rgb finite_value(const lc_material *m, const lc_hit *hit, lc_vec3 wi)
 
 static double finite_pdf(const lc_material *m, const lc_hit *hit, lc_vec3 wi)
 {
-    double cos_i = lc_dot(hit->n, wi), diffuse = lc_rgb_max(m->diffuse), glossy = lc_rgb_max(m->glossy), pdf = 0;
+    double cos_i = lc_dot(hit->n, wi), diffuse = lc_rgb_max(m->diffuse), pdf = 0;
     if (diffuse > 0 && cos_i * lc_dot(hit->n, hit->wo) > 0)
         pdf = diffuse / reflectance(m) * fabs(cos_i) * LC_INV_PI;
-    if (glossy > 0)
-        pdf += glossy / reflectance(m) * lc_glossy_pdf(lc_facing(hit->n, hit->wo), hit->wo, wi, m->alpha);
+    if (m->alpha > 0 && lc_rgb_max(m->glossy) > 0)
+        pdf += lc_rgb_max(m->glossy) / reflectance(m) * lc_glossy_pdf(lc_facing(hit->n, hit->wo), hit->wo, wi, m->alpha);
     return pdf;
 }
 

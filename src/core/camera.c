@@ -63,12 +63,12 @@ static lc_ray lens_ray(const lc_camera_frame *frame, double x, double y, double 
 lc_ray lc_camera_sample(const lc_camera_frame *frame, lc_sampler *sampler, int x, int y)
 {
     double dx = lc_next(sampler), dy = lc_next(sampler);
-    lc_ray ray;
-    if (frame->focus > 0) {
-        double u = lc_next(sampler), v = lc_next(sampler);
-        ray = lens_ray(frame, x + dx, y + dy, u, v);
-    } else
-        ray = lc_camera_frame_ray(frame, x + dx, y + dy);
+    if (!(frame->focus > 0) && !frame->moves)
+        return lc_camera_frame_ray(frame, x + dx, y + dy);
+    double u = 0, v = 0;
+    if (frame->focus > 0)
+        u = lc_next(sampler), v = lc_next(sampler);
+    lc_ray ray = frame->focus > 0 ? lens_ray(frame, x + dx, y + dy, u, v) : lc_camera_frame_ray(frame, x + dx, y + dy);
     if (frame->moves) { /* 24 bits: Embree's float then means the same moment */
         lc_sampler_seek(sampler, LC_DIMENSION_TIME);
         ray.time = floor(lc_next(sampler) * 0x1p24) * 0x1p-24;
