@@ -88,7 +88,7 @@ typedef struct lc_hit {
     lc_vec3 n;       /* unit normal of the surface as modelled; it emits on this side. NOT turned to the viewer */
     lc_vec3 wo;      /* unit direction back to where the ray came from */
     double distance; /* from there [m] */
-    double time;     /* the ray's */
+    double time;     /* the ray's: when this is looked at, and all that is seen from here */
     int shape, part; /* the host's own: which surface this is */
 } lc_hit;
 
@@ -164,7 +164,7 @@ typedef struct lc_light_sample {
 /* Number of lights: each emitting shape, point light and directional light is one. The sky is none. */
 int lc_light_count(const lc_scene *scene);
 
-/* Picks a point on light `i`, 0 <= i < lc_light_count(), uniformly over its area. */
+/* Picks a point on light `i`, 0 <= i < lc_light_count(), uniformly over its area; a moving light is where it is at hit->time. */
 void lc_light_sample_one(const lc_scene *scene, int i, const lc_hit *hit, lc_sampler *sampler, lc_light_sample *out);
 
 /* Picks a point uniformly over the union of ALL emitting area (then pdf_area = 1 / total area); returns 0 where nothing has area. */
