@@ -60,7 +60,7 @@ TEST := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard verify/tests/*.c))
 # The proofs of the judge: programs of their own, two of whose files have a main.
 PROOF := $(patsubst %.c,$(BUILD)/obj/%.o,$(filter-out %/calibrate.c %/power.c,$(wildcard verify/proof/*.c)))
 
-.PHONY: all check verify verify-table pictures povray-reference lint asan-check calibrate power judge-mutants needs fresh clean help
+.PHONY: all check verify verify-table full-table pictures povray-reference lint asan-check calibrate power judge-mutants bench needs fresh clean help
 all: $(BUILD)/lightcheck $(BUILD)/obj/estimators/template.o ## build the program
 
 $(BUILD)/lightcheck: $(CLI) $(LIB)
@@ -86,10 +86,16 @@ FORCE:
 verify: all ## run the harness: every estimator against every check that applies
 	$(BUILD)/lightcheck verify
 
-verify-table: all ## the quick suite once more: results/verify.md
-	$(BUILD)/lightcheck verify > $(BUILD)/verify.txt
-	{ printf '# The quick suite\n\nMade by `make verify-table`. On one class of CPU each run gives the same bits.\n\n'; \
-	    printf '```text\n'; cat $(BUILD)/verify.txt; printf '```\n'; } > results/verify.md
+verify-table: SUITE = quick
+verify-table: TABLE = results/verify.md
+verify-table: ## the quick suite once more: results/verify.md
+full-table: SUITE = full
+full-table: TABLE = results/verify_full.md
+full-table: ## the full suite: results/verify_full.md
+verify-table full-table: all
+	$(BUILD)/lightcheck verify --suite $(SUITE) > $(BUILD)/$@.txt
+	{ printf '# The $(SUITE) suite\n\nMade by `make $@`. On one class of CPU each run gives the same bits.\n\n'; \
+	    printf '```text\n'; cat $(BUILD)/$@.txt; printf '```\n'; } > $(TABLE)
 
 pictures: all ## the pictures of the README: results/cornell_*.png (about three minutes of one core)
 	for p in light_direct=256 three_point=256 hemisphere_direct=2048 path=2048 mirror=2048 dielectric=2048; do \
@@ -119,6 +125,9 @@ power: $(BUILD)/power ## samples that the judge needs, beside other programs' ru
 
 judge-mutants: ## wrong judges, each of which the tests must catch
 	@sh verify/tests/judge_mutants.sh
+
+bench: all ## how fast the tracer is on this machine: paths a second of one core
+	@sh verify/tests/bench.sh $(BUILD)/lightcheck
 
 needs: ## say what is missing, if anything is
 	@:

@@ -83,14 +83,29 @@ lc_ray lc_camera_ray(const lc_camera_desc *camera, int width, int height, double
     return lc_camera_frame_ray(&frame, x, y);
 }
 
-void lc_camera_see(const lc_scene *scene, const lc_ray *ray, lc_hit *hit)
+static void clip_far(const lc_scene *scene, lc_hit *hit)
 {
-    const lc_camera_desc *camera = &lc_scene_description(scene)->camera;
-    lc_intersect(scene, ray, hit);
+    const lc_camera_desc *camera = &scene->desc.camera;
     if (!hit->valid || isinf(camera->far_clip))
         return;
     lc_vec3 axis = lc_affine_vector(&camera->to_world, lc_vec(0, 0, 1));
     lc_vec3 eye = lc_affine_point(&camera->to_world, lc_vec(0, 0, 0));
     if (lc_dot(axis, lc_sub(hit->p, eye)) > camera->far_clip)
         hit->valid = 0;
+}
+
+void lc_camera_see(const lc_scene *scene, const lc_ray *ray, lc_hit *hit)
+{
+    lc_intersect(scene, ray, hit);
+    clip_far(scene, hit);
+}
+
+void lc_camera_see_packet(const lc_scene *scene, const lc_ray rays[LC_PACKET], lc_hit hits[LC_PACKET])
+{
+    lc_accel_intersect_packet(scene->accel, scene, rays, hits);
+    for (int i = 0; i < LC_PACKET; ++i) {
+        hits[i].wo = lc_neg(rays[i].d);
+        hits[i].time = rays[i].time;
+        clip_far(scene, &hits[i]);
+    }
 }

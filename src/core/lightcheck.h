@@ -70,7 +70,11 @@ static inline lc_rgb lc_black(void) { return lc_color(0, 0, 0); }
 static inline lc_rgb lc_rgb_add(lc_rgb a, lc_rgb b) { return lc_color(a.r + b.r, a.g + b.g, a.b + b.b); }
 static inline lc_rgb lc_rgb_mul(lc_rgb a, lc_rgb b) { return lc_color(a.r * b.r, a.g * b.g, a.b * b.b); }
 static inline lc_rgb lc_rgb_scale(double s, lc_rgb a) { return lc_color(s * a.r, s * a.g, s * a.b); }
-static inline double lc_rgb_max(lc_rgb a) { return fmax(a.r, fmax(a.g, a.b)); }
+static inline double lc_rgb_max(lc_rgb a)
+{
+    double most = a.g > a.b ? a.g : a.b;
+    return a.r > most ? a.r : most;
+}
 
 /* ---- the scene: rays, hits and what a surface does ------------------------------------------------ */
 

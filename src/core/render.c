@@ -32,14 +32,37 @@ static int is_bad(lc_rgb c)
     return !(c.r >= 0 && c.g >= 0 && c.b >= 0 && c.r < INFINITY && c.g < INFINITY && c.b < INFINITY);
 }
 
-static lc_rgb one_sample(const lc_scene *scene, const lc_estimator *estimator, const lc_options *bounces,
-                         lc_sampler *sampler, const lc_camera_frame *frame, int x, int y)
+/* LC_PACKET neighbouring samples of a pixel: their camera rays are made and traced together. */
+typedef struct packet {
+    lc_sampler samplers[LC_PACKET]; /* where the estimator begins */
+    lc_ray rays[LC_PACKET];
+    lc_hit hits[LC_PACKET];
+} packet;
+
+/* The whole packet that holds sample `s`, whichever of it are wanted: a sample must not depend on where a render starts or ends. */
+static void look(packet *p, const lc_scene *scene, const lc_camera_frame *frame, const lc_render_options *o,
+                 uint32_t pixel, int x, int y, uint64_t s, const lc_trace_log *log)
 {
-    lc_hit hit;
-    lc_ray ray = lc_camera_sample(frame, sampler, x, y);
-    lc_camera_see(scene, &ray, &hit);
-    lc_sampler_seek(sampler, LC_DIMENSION_ESTIMATOR);
-    return estimator->radiance(scene, &ray, &hit, bounces, sampler);
+    for (int i = 0; i < LC_PACKET; ++i) {
+        uint64_t sample = s / LC_PACKET * LC_PACKET + (uint64_t)i;
+        lc_sampler *sampler = &p->samplers[i];
+        lc_sampler_start(sampler, o->seed, o->arm, pixel, (uint32_t)sample);
+        sampler->log = sample == s ? log : NULL;
+        p->rays[i] = lc_camera_sample(frame, sampler, x, y);
+        lc_sampler_seek(sampler, LC_DIMENSION_ESTIMATOR);
+    }
+    lc_camera_see_packet(scene, p->rays, p->hits);
+}
+
+static void note_bad(bad_samples *bad, lc_rgb c, uint32_t pixel, uint64_t sample)
+{
+    if (bad->count++ != 0 && pixel >= bad->pixel)
+        return;
+    bad->pixel = pixel;
+    bad->sample = sample;
+    bad->value[0] = c.r;
+    bad->value[1] = c.g;
+    bad->value[2] = c.b;
 }
 
 static void render_pixel(const job *j, int x, int y, bad_samples *bad)
@@ -48,19 +71,15 @@ static void render_pixel(const job *j, int x, int y, bad_samples *bad)
     uint32_t pixel = (uint32_t)(y * j->film->width + x);
     lc_options bounces = {o->min_bounces, o->max_bounces};
     double block[LC_BLOCK][3];
+    packet p;
     int filled = 0;
     for (uint64_t s = o->first; s < o->first + o->count; ++s) {
-        lc_sampler sampler;
-        lc_sampler_start(&sampler, o->seed, o->arm, pixel, (uint32_t)s);
-        lc_rgb c = one_sample(j->scene, j->estimator, &bounces, &sampler, &j->frame, x, y);
+        int i = (int)(s % LC_PACKET);
+        if (i == 0 || s == o->first)
+            look(&p, j->scene, &j->frame, o, pixel, x, y, s, NULL);
+        lc_rgb c = j->estimator->radiance(j->scene, &p.rays[i], &p.hits[i], &bounces, &p.samplers[i]);
         if (is_bad(c)) {
-            if (bad->count++ == 0 || pixel < bad->pixel) {
-                bad->pixel = pixel;
-                bad->sample = s;
-                bad->value[0] = c.r;
-                bad->value[1] = c.g;
-                bad->value[2] = c.b;
-            }
+            note_bad(bad, c, pixel, s);
             c = lc_black(); /* the film stays readable; the count makes it fail */
         }
         block[filled][0] = c.r;
@@ -213,15 +232,17 @@ lc_rgb lc_replay(lc_scene *scene, const lc_estimator *estimator, const lc_render
                  int height, int x, int y, uint64_t sample, const lc_trace_log *log)
 {
     lc_options bounces = {options->min_bounces, options->max_bounces};
-    lc_sampler sampler;
-    lc_sampler_start(&sampler, options->seed, options->arm, (uint32_t)(y * width + x), (uint32_t)sample);
-    sampler.log = log;
-    scene->log = log;
-    lc_replay_begin();
     lc_camera_frame frame;
+    packet p;
+    int i = (int)(sample % LC_PACKET);
+    lc_replay_begin();
     lc_camera_prepare(&frame, &scene->desc.camera, width, height);
     frame.moves = scene->moves;
-    lc_rgb radiance = one_sample(scene, estimator, &bounces, &sampler, &frame, x, y);
+    look(&p, scene, &frame, options, (uint32_t)(y * width + x), x, y, sample, log);
+    scene->log = log;
+    if (log)
+        lc_log_hit(scene, "camera ray hits", &p.hits[i]);
+    lc_rgb radiance = estimator->radiance(scene, &p.rays[i], &p.hits[i], &bounces, &p.samplers[i]);
     scene->log = NULL;
     return radiance;
 }

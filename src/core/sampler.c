@@ -29,7 +29,12 @@ void lc_sampler_start(lc_sampler *sampler, uint64_t seed, uint32_t arm, uint32_t
     sampler->log = NULL;
 }
 
-void lc_sampler_seek(lc_sampler *sampler, uint32_t dimension) { sampler->dimension = dimension; }
+/* The block is made here and not when it is asked for: of several samplers, their rounds overlap in the CPU. */
+void lc_sampler_seek(lc_sampler *sampler, uint32_t dimension)
+{
+    sampler->dimension = dimension;
+    load_block(sampler, dimension >> 2);
+}
 
 double lc_next(lc_sampler *sampler)
 {

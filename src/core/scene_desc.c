@@ -118,11 +118,20 @@ lc_texture lc_texture_constant(lc_rgb color)
     return texture;
 }
 
+/* x - floor(x), without a call; a number so large that it has no fraction gives 0. */
+static double fraction(double x)
+{
+    if (!(fabs(x) < 0x1p52))
+        return 0;
+    double rest = x - (double)(int64_t)x;
+    return rest < 0 ? rest + 1 : rest;
+}
+
 lc_rgb lc_texture_at(const lc_texture *texture, double u, double v)
 {
     if (!texture->is_checkerboard)
         return texture->color[0];
     u = u * texture->scale[0] + texture->offset[0];
     v = v * texture->scale[1] + texture->offset[1];
-    return texture->color[(u - floor(u) > 0.5) != (v - floor(v) > 0.5)];
+    return texture->color[(fraction(u) > 0.5) != (fraction(v) > 0.5)];
 }

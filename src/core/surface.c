@@ -23,7 +23,7 @@ static const char *shape_kind_name(const lc_scene *scene, int shape)
     return names[scene->desc.shapes[shape].kind];
 }
 
-static void log_hit(const lc_scene *scene, const char *what, const lc_hit *hit)
+void lc_log_hit(const lc_scene *scene, const char *what, const lc_hit *hit)
 {
     if (hit->valid)
         lc_log(scene->log, "%s: %s of line %d at (%.9g, %.9g, %.9g), distance %.9g, n (%.6g, %.6g, %.6g)", what,
@@ -39,18 +39,20 @@ void lc_intersect(const lc_scene *scene, const lc_ray *ray, lc_hit *hit)
     hit->time = ray->time;
     hit->valid = lc_accel_intersect(scene->accel, scene, ray->o, ray->d, ray->time, -1, hit);
     if (scene->log)
-        log_hit(scene, "camera ray hits", hit);
+        lc_log_hit(scene, "camera ray hits", hit);
 }
 
 int lc_trace(const lc_scene *scene, const lc_hit *from, lc_vec3 wi, lc_hit *next)
 {
-    lc_hit hit = *from;
-    hit.wo = lc_neg(wi);
-    hit.valid = from->valid && lc_accel_intersect(scene->accel, scene, from->p, wi, from->time, from->part, &hit);
+    double time = from->time;
+    lc_vec3 start = from->p;
+    int part = from->part; /* `next` may be `from` */
+    next->valid = from->valid && lc_accel_intersect(scene->accel, scene, start, wi, time, part, next);
+    next->wo = lc_neg(wi);
+    next->time = time;
     if (scene->log)
-        log_hit(scene, "ray hits", &hit);
-    *next = hit;
-    return hit.valid;
+        lc_log_hit(scene, "ray hits", next);
+    return next->valid;
 }
 
 /* Only textures ask for these, and few surfaces have one: computed on demand. */
@@ -71,11 +73,11 @@ void lc_shape_uv(const lc_scene *scene, int shape, int part, lc_vec3 p, double *
         double z = s * lc_dot(round->n, r);
         x = s * lc_dot(round->eu, r);
         y = s * lc_dot(round->ev, r);
-        *v = atan2(hypot(x, y), z) * LC_INV_PI;
+        *v = atan2(sqrt(x * x + y * y), z) * LC_INV_PI;
     } else {
         x = lc_dot(round->du, r);
         y = lc_dot(round->dv, r);
-        *v = hypot(x, y);
+        *v = sqrt(x * x + y * y);
     }
     double phi = atan2(y, x);
     *u = (phi < 0 ? phi + 2.0 * LC_PI : phi) * (0.5 * LC_INV_PI);

@@ -4,6 +4,7 @@
 
 #include <stdio.h>
 
+#include "core/scene_c.h"
 #include "verify/stats/stats.h"
 #include "verify/tests/scene_help.h"
 
@@ -105,6 +106,18 @@ START_TEST(extremes_of_the_unit_square)
             if (extreme[k % 4] == 0)
                 ck_assert(lc_dot(w, n) > 1 - 1e-12);
         }
+}
+END_TEST
+
+/* The circle, all the way round, against the library's cosine and sine. */
+START_TEST(azimuth_goes_round_once)
+{
+    for (int i = 0; i <= 1 << 12; ++i) {
+        double v = fmin(i * 0x1p-12, 1 - 0x1p-32);
+        lc_vec3 w = lc_uniform_sphere(0.5, v);
+        ck_assert_double_eq_tol(w.x, cos(2 * LC_PI * v), 4e-15);
+        ck_assert_double_eq_tol(w.y, sin(2 * LC_PI * v), 4e-15);
+    }
 }
 END_TEST
 
@@ -332,6 +345,7 @@ Suite *lc_suite_warp(void)
     tcase_add_test(tc, the_two_are_told_apart);
     tcase_add_test(tc, means_of_the_cosine);
     tcase_add_test(tc, extremes_of_the_unit_square);
+    tcase_add_test(tc, azimuth_goes_round_once);
     tcase_add_test(tc, points_on_lights_are_uniform);
     tcase_add_test(tc, union_chooses_by_area);
     tcase_add_test(tc, delta_lights_by_hand);
