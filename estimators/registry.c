@@ -12,7 +12,8 @@
     X(three_point)       \
     X(path)              \
     X(mirror)            \
-    X(dielectric)
+    X(dielectric)        \
+    X(glossy_direct)
 
 #define DECLARE(id) extern const lc_estimator lc_estimator_##id;
 #define MEMBER(id) &lc_estimator_##id,

@@ -67,6 +67,8 @@ typedef struct lc_side {
     lc_texture diffuse; /* albedo, times the lobe's share in a blend */
     lc_rgb mirror;      /* reflectance, times its share */
     double glass;       /* share of the dielectric lobe */
+    lc_rgb glossy;      /* reflectance of the rough mirror's facets, times its share */
+    double alpha;       /* their roughness, in (0, 1]; 0 where there are none */
 } lc_side;
 
 typedef struct lc_material_desc {
@@ -82,7 +84,8 @@ typedef enum lc_shape_kind { LC_RECTANGLE, LC_DISK, LC_CUBE, LC_SPHERE } lc_shap
 
 typedef struct lc_shape_desc {
     lc_shape_kind kind;
-    lc_affine to_world; /* a sphere's: rotation, uniform scale and translation only */
+    lc_affine to_world; /* a sphere's: rotation, uniform scale and translation only; of a moving shape, at time 0 */
+    lc_vec3 motion;     /* how far it has moved, straight and evenly, at time 1 [m] */
     int flip_normals;
     int material;        /* index into materials */
     int emits;           /* 1: an area light, */
@@ -104,12 +107,14 @@ typedef struct lc_directional_desc {
 
 typedef enum lc_fov_axis { LC_FOV_X, LC_FOV_Y, LC_FOV_DIAGONAL, LC_FOV_SMALLER, LC_FOV_LARGER } lc_fov_axis;
 
-/* Mitsuba's perspective camera: looks along local +z, up is +y, image right is local -x. */
+/* Mitsuba's perspective camera, or with an aperture its thinlens: looks along local +z, up is +y, image right is local -x. */
 typedef struct lc_camera_desc {
     lc_affine to_world; /* rigid */
     double fov;         /* whole angle along fov_axis [degrees], in (0, 180) */
     lc_fov_axis fov_axis;
     double near_clip, far_clip; /* along the viewing axis [m]; 0 and INFINITY when not given */
+    double aperture_radius;     /* of the lens [m], 0: a pinhole */
+    double focus_distance;      /* along the viewing axis, to the plane that is sharp [m]; > 0 where there is a lens */
 } lc_camera_desc;
 
 typedef struct lc_scene_desc {
@@ -156,7 +161,7 @@ double lc_scene_emitting_area(const lc_scene *scene); /* m^2 */
 void lc_intersect(const lc_scene *scene, const lc_ray *ray, lc_hit *hit);
 
 /* The ray through (x, y) of an image of width x height pixels, x to the right and y downwards from the upper left corner; it starts
- * at the near clip. */
+ * at the near clip, at time 0. Of a lens, the ray through its centre. */
 lc_ray lc_camera_ray(const lc_camera_desc *camera, int width, int height, double x, double y);
 /* What that ray sees first: like lc_intersect, but a hit beyond the far clip is a miss. */
 void lc_camera_see(const lc_scene *scene, const lc_ray *ray, lc_hit *hit);

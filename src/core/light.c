@@ -61,12 +61,14 @@ static void sample_area(const lc_scene *scene, int shape, double pdf_area, const
 {
     double u = lc_next(sampler), v = lc_next(sampler);
     sample_shape(scene, shape, u, v, out);
+    out->radiance = lc_shape_radiance(scene, shape, out->part, out->p);
+    if (scene->moves)
+        out->p = lc_add(out->p, lc_shape_shift(scene, shape, hit->time));
     lc_vec3 to = lc_sub(out->p, hit->p);
     out->is_delta = 0;
     out->distance = lc_length(to);
     out->wi = lc_scale(1.0 / out->distance, to);
     out->irradiance = lc_black();
-    out->radiance = lc_shape_radiance(scene, shape, out->part, out->p);
     out->pdf_area = pdf_area;
 }
 

@@ -48,8 +48,7 @@ static void look(packet *p, const lc_scene *scene, const lc_camera_frame *frame,
         lc_sampler *sampler = &p->samplers[i];
         lc_sampler_start(sampler, o->seed, o->arm, pixel, (uint32_t)sample);
         sampler->log = sample == s ? log : NULL;
-        double dx = lc_next(sampler), dy = lc_next(sampler);
-        p->rays[i] = lc_camera_frame_ray(frame, x + dx, y + dy);
+        p->rays[i] = lc_camera_sample(frame, sampler, x, y);
         lc_sampler_seek(sampler, LC_DIMENSION_ESTIMATOR);
     }
     lc_camera_see_packet(scene, p->rays, p->hits);
@@ -196,6 +195,7 @@ lc_status lc_render(lc_film *film, const lc_scene *scene, const lc_estimator *es
              .lock = PTHREAD_MUTEX_INITIALIZER,
              .next_tile = o.shard};
     lc_camera_prepare(&j.frame, &scene->desc.camera, film->width, film->height);
+    j.frame.moves = scene->moves;
     j.tiles = j.tiles_x * ((film->height + LC_TILE - 1) / LC_TILE);
 
     long cores = o.threads > 0 ? o.threads : sysconf(_SC_NPROCESSORS_ONLN);
@@ -237,6 +237,7 @@ lc_rgb lc_replay(lc_scene *scene, const lc_estimator *estimator, const lc_render
     int i = (int)(sample % LC_PACKET);
     lc_replay_begin();
     lc_camera_prepare(&frame, &scene->desc.camera, width, height);
+    frame.moves = scene->moves;
     look(&p, scene, &frame, options, (uint32_t)(y * width + x), x, y, sample, log);
     scene->log = log;
     if (log)

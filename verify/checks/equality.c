@@ -44,10 +44,10 @@ static lc_status plan(const lc_check *self, lc_claims *claims, const lc_scene *s
 {
     const lc_scene_desc *desc = lc_scene_description(scene);
     unsigned emitters = estimator->emitters & lc_scene_emitters(scene);
-    /* Black by both, or without variance: analytic and furnace hold these exactly. Where emitters touch, sampling them by area has infinite
+    /* Black by both, or without variance: analytic and furnace hold these exactly; effects holds each estimator. Where emitters touch, sampling them by area has infinite
      * variance. */
     static const char *const never[] = {"light_behind", "light_below", "furnace_sphere", "thermal_furnace",
-                                        "mirror_corridor"};
+                                        "mirror_corridor", "glossy_sky", "glossy_lamp", "lens_edge", "motion_flight", "motion_shadow", "motion_lamp"};
     for (size_t i = 0; i < sizeof never / sizeof never[0]; ++i)
         if (strcmp(desc->name, never[i]) == 0)
             return LC_OK;

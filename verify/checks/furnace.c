@@ -80,8 +80,8 @@ static lc_status plan_inside(const lc_check *self, lc_claims *claims, const lc_s
         claim->expect = expect_inside;
         claim->tolerance = 1e-9;
         claim->may_be_still = !varies && k == 1; /* the kernel is constant */
-        /* Checkerboards are looked up at every bounce: only path tracers of one lobe pay for that in the quick suite. */
-        int is_plain = estimator->lobes == LC_DIFFUSE;
+        /* Checkerboards are looked up at every bounce: only path tracers without mirrors pay for that in the quick suite. */
+        int is_plain = (estimator->lobes & (LC_MIRROR | LC_GLASS)) == 0;
         claim->full_only = estimator->max_bounces > 1 && !(varies ? is_plain && (k == 4 || k == 8) : k == 2 || k == 5);
         claim->source = "inside of a sphere: rho(x) <Le> (1 + <rho> + ... + <rho>^(K-1))";
     }

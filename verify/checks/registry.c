@@ -13,6 +13,7 @@
     X(emission) \
     X(analytic) \
     X(specular) \
+    X(effects) \
     X(furnace) \
     X(equality) \
     X(povray)

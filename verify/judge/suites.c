@@ -48,6 +48,12 @@ const char *const lc_suite_scenes[] = {
     "cornell_glass",
     "bright_room",
     "bright_mirrors",
+    "glossy_sky",
+    "glossy_lamp",
+    "lens_edge",
+    "motion_flight",
+    "motion_shadow",
+    "motion_lamp",
     NULL,
 };
 
@@ -228,6 +234,18 @@ const lc_cell lc_cells[] = {
     {"bright_mirrors", "three_point", 1, 1.47},
     {"bright_mirrors", "path", 1, 3.87},
     {"bright_mirrors", "dielectric", 3, 2.71},
+    {"glossy_sky", "hemisphere_direct", 1, 3.85},
+    {"glossy_sky", "dielectric", 1, 3.85},
+    {"glossy_sky", "glossy_direct", 1, 0.68},
+    {"glossy_lamp", "light_direct", 1, 1.42},
+    {"glossy_lamp", "three_point", 1, 1.42},
+    {"glossy_lamp", "glossy_direct", 1, 3.48},
+    {"lens_edge", "light_direct", 1, 0.895},
+    {"motion_flight", "light_direct", 1, 1.24},
+    {"motion_shadow", "light_direct", 1, 0.273},
+    {"motion_lamp", "hemisphere_direct", 1, 5.76},
+    {"motion_lamp", "light_direct", 1, 0.54},
+    {"motion_lamp", "three_point", 1, 0.539},
     {NULL, NULL, 0, 0},
 };
 

@@ -53,7 +53,13 @@
     X(dielectric_weighted_again, "dielectric") \
     X(dielectric_never_reflects, "dielectric") \
     X(dielectric_swapped, "dielectric") \
-    X(dielectric_straight, "dielectric")
+    X(dielectric_straight, "dielectric") \
+    X(glossy_no_jacobian, "glossy_direct") \
+    X(glossy_no_cosine, "glossy_direct") \
+    X(glossy_one_direction, "glossy_direct") \
+    X(light_lamp_at_rest, "light_direct") \
+    X(light_shadow_at_rest, "light_direct") \
+    X(hemisphere_no_time, "hemisphere_direct")
 
 #define DECLARE(id, of) extern const lc_estimator lc_estimator_##id;
 #define MEMBER(id, of) {&lc_estimator_##id, of},

@@ -22,7 +22,8 @@ static int same_side(const lc_side *a, const lc_side *b)
            (!s->is_checkerboard ||
             (same_color(s->color[1], t->color[1]) && s->scale[0] == t->scale[0] && s->scale[1] == t->scale[1] &&
              s->offset[0] == t->offset[0] && s->offset[1] == t->offset[1])) &&
-           same_color(a->mirror, b->mirror) && a->glass == b->glass;
+           same_color(a->mirror, b->mirror) && a->glass == b->glass && same_color(a->glossy, b->glossy) &&
+           a->alpha == b->alpha;
 }
 
 static const lc_material_desc *material_of(const lc_pov_writer *w, const lc_shape_desc *shape)
@@ -53,13 +54,18 @@ static lc_status check_glass(const lc_pov_writer *w, const lc_shape_desc *shape,
 static lc_status check_shape(const lc_pov_writer *w, const lc_shape_desc *shape, lc_error *err)
 {
     const lc_material_desc *m = material_of(w, shape);
-    int specular = 0, diffuse = 0, glass = 0, checkered = 0;
+    int specular = 0, diffuse = 0, glass = 0, checkered = 0, glossy = 0;
     for (int i = 0; i < 2; ++i) {
         specular |= !lc_pov_is_black(m->side[i].mirror);
         glass |= m->side[i].glass > 0;
         diffuse |= !texture_is_black(&m->side[i].diffuse);
         checkered |= m->side[i].diffuse.is_checkerboard;
+        glossy |= !lc_pov_is_black(m->side[i].glossy);
     }
+    if (lc_length(shape->motion) > 0)
+        return refuse(w, shape, "it moves: POV-Ray knows motion from frame to frame only", err);
+    if (glossy)
+        return refuse(w, shape, "POV-Ray's reflections are sharp: it has no rough mirror", err);
     if ((specular || glass) && w->options->mode != LC_POV_SPECULAR)
         return refuse(w, shape,
                       "POV-Ray's lights reach no surface off a mirror or through glass: mode specular, for scenes "

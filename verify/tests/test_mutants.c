@@ -64,6 +64,12 @@ static const struct row {
     {"dielectric_never_reflects", "specular", "glass_blend"},
     {"dielectric_swapped", "specular", "glass_blend"},
     {"dielectric_straight", "specular", "glass_slab"},
+    {"glossy_no_jacobian", "effects", "glossy_lamp"},
+    {"glossy_no_cosine", "effects", "glossy_lamp"},
+    {"glossy_one_direction", "effects", "glossy_lamp"},
+    {"light_lamp_at_rest", "effects", "motion_lamp"},
+    {"light_shadow_at_rest", "effects", "motion_shadow"},
+    {"hemisphere_no_time", "effects", "motion_lamp"},
 };
 enum { ROWS = sizeof rows / sizeof rows[0] };
 

@@ -78,6 +78,10 @@ START_TEST(export_says_what_each_part_is)
     ck_assert_ptr_nonnull(strstr(text, "emission rgb <1, 2, 3>"));
     free(text);
     free(again);
+    desc.camera.aperture_radius = desc.camera.focus_distance = 1;
+    ck_assert_int_eq(export_text(&text, &desc, &options), LC_BAD_INPUT);
+    ck_assert_ptr_nonnull(strstr(err.text, "a lens"));
+    free(text);
     lc_scene_desc_release(&desc);
 }
 END_TEST
@@ -92,6 +96,10 @@ static const struct {
     {HEAD "<shape type=\"sphere\">" GLASS "</shape></scene>", LC_POV_DIRECT, "through glass"},
     {HEAD "<shape type=\"sphere\">" MIRROR("1") "</shape></scene>", LC_POV_RADIOSITY, "off a mirror"},
     {HEAD "<shape type=\"sphere\"/></scene>", LC_POV_SPECULAR, "diffuse"},
+    {HEAD "<shape type=\"sphere\"><vector name=\"motion\" value=\"1 0 0\"/></shape></scene>", LC_POV_DIRECT, "moves"},
+    {HEAD "<shape type=\"sphere\"><bsdf type=\"roughconductor\"><string name=\"distribution\" value=\"ggx\"/></bsdf>"
+          "</shape></scene>",
+     LC_POV_SPECULAR, "no rough mirror"},
     {HEAD "<shape type=\"rectangle\">" GLASS "</shape></scene>", LC_POV_SPECULAR, "volume"},
     {HEAD "<shape type=\"sphere\">" GLASS "</shape><shape type=\"cube\">" GLASS "</shape></scene>", LC_POV_SPECULAR,
      "other glass"},

@@ -31,6 +31,8 @@ Suite *lc_suite_surface(void);
 Suite *lc_suite_render(void);
 Suite *lc_suite_bsdf(void);
 Suite *lc_suite_energy(void);
+Suite *lc_suite_effects(void);
+Suite *lc_suite_motion(void);
 Suite *lc_suite_cli(void);
 Suite *lc_suite_report(void);
 Suite *lc_suite_estimators(void);
