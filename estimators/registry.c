@@ -11,6 +11,9 @@
     X(light_direct) \
     X(three_point)       \
     X(path)              \
+    X(path_cosine) \
+    X(path_nee) \
+    X(path_mis) \
     X(mirror)            \
     X(dielectric)
 

@@ -119,6 +119,14 @@ int lc_light_sample_union(const lc_scene *scene, const lc_hit *hit, lc_sampler *
     return 1;
 }
 
+double lc_light_pdf_area(const lc_scene *scene, const lc_hit *hit)
+{
+    double pdf_area = hit->valid && scene->desc.shapes[hit->shape].emits ? 1.0 / scene->shapes[hit->shape].area : 0.0;
+    if (scene->log)
+        lc_log(scene->log, "light pdf: pdf_area %.9g 1/m^2", pdf_area);
+    return pdf_area;
+}
+
 int lc_visible(const lc_scene *scene, const lc_hit *hit, const lc_light_sample *light)
 {
     int to_infinity = isinf(light->distance);

@@ -166,6 +166,10 @@ void lc_light_sample_one(const lc_scene *scene, int i, const lc_hit *hit, lc_sam
 /* Picks a point uniformly over the union of ALL emitting area (then pdf_area = 1 / total area); returns 0 where nothing has area. */
 int lc_light_sample_union(const lc_scene *scene, const lc_hit *hit, lc_sampler *sampler, lc_light_sample *out);
 
+/* The pdf_area that lc_light_sample_one() gives a point of the light which a ray has found at `hit` [1/m^2]: what its
+ * density would have been, had the light been sampled instead. 0 on a miss, and where nothing emits. */
+double lc_light_pdf_area(const lc_scene *scene, const lc_hit *hit);
+
 /* 1 when nothing stands between the hit and the light's point, else 0. */
 int lc_visible(const lc_scene *scene, const lc_hit *hit, const lc_light_sample *light);
 

@@ -100,7 +100,8 @@ static lc_status plan(const lc_check *self, lc_claims *claims, const lc_scene *s
         claim->source = rows[i].source;
         /* At one bounce a path tracer is its own direct estimator: one scene tells as much. */
         claim->full_only = estimator->max_bounces > 1 && !claim->exact && strcmp(name, "sky") != 0;
-        claim->may_be_still = lc_scene_emitters(scene) == LC_DIRECTIONAL;
+        /* Nothing varies: one direction, or a constant sky by cosine weights. */
+        claim->may_be_still = lc_scene_emitters(scene) == LC_DIRECTIONAL || strcmp(name, "sky") == 0;
     }
     return LC_OK;
 }

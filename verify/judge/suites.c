@@ -60,12 +60,15 @@ const lc_cell lc_cells[] = {
     {"plane_rectangle", "path", 1, 1.33},
     {"plane_rectangle", "mirror", 1, 1.33},
     {"plane_rectangle", "dielectric", 1, 1.32},
+    {"plane_rectangle", "path_cosine", 1, 0.832},
     {"plane_tilted", "hemisphere_direct", 1, 3.41},
     {"plane_tilted", "light_direct", 1, 0.616},
     {"plane_tilted", "three_point", 1, 0.615},
     {"plane_tilted", "path", 1, 3.4},
     {"plane_tilted", "mirror", 1, 3.41},
     {"plane_tilted", "dielectric", 1, 3.41},
+    {"plane_tilted", "path_nee", 1, 0.616},
+    {"plane_tilted", "path_mis", 1, 0.671},
     {"plane_disk", "hemisphere_direct", 1, 1.38},
     {"plane_disk", "light_direct", 1, 0.729},
     {"plane_disk", "three_point", 1, 0.73},
@@ -102,6 +105,7 @@ const lc_cell lc_cells[] = {
     {"five_lights", "path", 1, 4.3},
     {"five_lights", "mirror", 1, 4.29},
     {"five_lights", "dielectric", 1, 4.32},
+    {"five_lights", "path_mis", 1, 1.55},
     {"occluder", "hemisphere_direct", 1, 6.19},
     {"occluder", "light_direct", 1, 1.19},
     {"occluder", "three_point", 1, 1.4},
@@ -116,6 +120,9 @@ const lc_cell lc_cells[] = {
     {"cornell", "mirror", 5, 11.7},
     {"cornell", "dielectric", 1, 14.6},
     {"cornell", "dielectric", 5, 11.5},
+    {"cornell", "path_cosine", 5, 8.71},
+    {"cornell", "path_nee", 5, 0.976},
+    {"cornell", "path_mis", 5, 1.01},
     {"cornell_small", "hemisphere_direct", 1, 14.7},
     {"cornell_small", "three_point", 1, 0.637},
     {"cornell_small", "path", 1, 14.6},
@@ -134,6 +141,8 @@ const lc_cell lc_cells[] = {
     {"sky", "path", 1, 0.645},
     {"sky", "mirror", 1, 0.645},
     {"sky", "dielectric", 1, 0.645},
+    {"sky", "path_cosine", 1, 0.0563},
+    {"sky", "path_mis", 1, 0.0562},
     {"flipped_twosided", "hemisphere_direct", 1, 2.33},
     {"flipped_twosided", "light_direct", 1, 0.453},
     {"flipped_twosided", "three_point", 1, 0.452},
@@ -151,20 +160,20 @@ const lc_cell lc_cells[] = {
     {"furnace_sphere", "path", 8, 1.04},
     {"furnace_sphere", "mirror", 1, 0.578},
     {"furnace_sphere", "mirror", 2, 0.649},
-    {"furnace_sphere", "mirror", 3, 0.728},
     {"furnace_sphere", "mirror", 4, 0.802},
     {"furnace_sphere", "mirror", 5, 0.87},
-    {"furnace_sphere", "mirror", 6, 0.933},
-    {"furnace_sphere", "mirror", 7, 0.99},
     {"furnace_sphere", "mirror", 8, 1.04},
     {"furnace_sphere", "dielectric", 1, 0.577},
     {"furnace_sphere", "dielectric", 2, 0.648},
-    {"furnace_sphere", "dielectric", 3, 0.726},
     {"furnace_sphere", "dielectric", 4, 0.8},
     {"furnace_sphere", "dielectric", 5, 0.867},
-    {"furnace_sphere", "dielectric", 6, 0.929},
-    {"furnace_sphere", "dielectric", 7, 0.986},
     {"furnace_sphere", "dielectric", 8, 1.04},
+    {"furnace_sphere", "path_cosine", 5, 0},
+    {"furnace_sphere", "path_cosine", 8, 0},
+    {"furnace_sphere", "path_nee", 5, 0},
+    {"furnace_sphere", "path_nee", 8, 0},
+    {"furnace_sphere", "path_mis", 5, 0},
+    {"furnace_sphere", "path_mis", 8, 0},
     {"furnace_checker", "hemisphere_direct", 1, 1.62},
     {"furnace_checker", "light_direct", 1, 1.26},
     {"furnace_checker", "three_point", 1, 1.26},
@@ -178,21 +187,20 @@ const lc_cell lc_cells[] = {
     {"furnace_checker", "path", 8, 1.71},
     {"furnace_checker", "mirror", 1, 1.62},
     {"furnace_checker", "mirror", 2, 1.49},
-    {"furnace_checker", "mirror", 3, 1.53},
     {"furnace_checker", "mirror", 4, 1.58},
     {"furnace_checker", "mirror", 5, 1.63},
-    {"furnace_checker", "mirror", 6, 1.67},
-    {"furnace_checker", "mirror", 7, 1.7},
     {"furnace_checker", "mirror", 8, 1.71},
     {"furnace_checker", "dielectric", 1, 1.62},
     {"furnace_checker", "dielectric", 2, 1.49},
-    {"furnace_checker", "dielectric", 3, 1.53},
     {"furnace_checker", "dielectric", 4, 1.58},
     {"furnace_checker", "dielectric", 5, 1.63},
-    {"furnace_checker", "dielectric", 6, 1.66},
-    {"furnace_checker", "dielectric", 7, 1.69},
     {"furnace_checker", "dielectric", 8, 1.7},
+    {"furnace_checker", "path_cosine", 8, 1.05},
+    {"furnace_checker", "path_nee", 4, 1.03},
+    {"furnace_checker", "path_mis", 8, 0.879},
     {"mixed_lights", "light_direct", 1, 1.02},
+    {"mixed_lights", "path_nee", 1, 1.02},
+    {"mixed_lights", "path_mis", 1, 0.786},
     {"textured_lamp", "hemisphere_direct", 1, 2.75},
     {"textured_lamp", "light_direct", 1, 1.39},
     {"textured_lamp", "three_point", 1, 1.39},
@@ -224,6 +232,9 @@ const lc_cell lc_cells[] = {
     {"bright_room", "mirror", 3, 2.61},
     {"bright_room", "dielectric", 1, 3.32},
     {"bright_room", "dielectric", 3, 2.62},
+    {"bright_room", "path_cosine", 3, 2.08},
+    {"bright_room", "path_mis", 3, 0.708},
+    {"bright_room", "path_nee", 3, 0.899},
     {"bright_mirrors", "hemisphere_direct", 1, 3.84},
     {"bright_mirrors", "three_point", 1, 1.47},
     {"bright_mirrors", "path", 1, 3.87},
@@ -237,6 +248,49 @@ const lc_suite *lc_suite_find(const char *name)
         if (strcmp(s->name, name) == 0)
             return s;
     return NULL;
+}
+
+/* Estimators that vary another one have these rows, and the exact ones; in the quick suite those marked so. Any other estimator, a
+ * student's too, has every row that is not full_only. */
+static const struct {
+    const char *estimator, *check, *scene;
+    int max_bounces, is_quick;
+} chosen_rows[] = {
+    {"path_cosine", "analytic", "sky", 1, 1},
+    {"path_cosine", "analytic", "plane_rectangle", 1, 0},
+    {"path_cosine", "furnace", "furnace_sphere", 5, 1},
+    {"path_cosine", "furnace", "furnace_sphere", 8, 0},
+    {"path_cosine", "furnace", "furnace_checker", 8, 1},
+    {"path_cosine", "equality", "bright_room", 3, 0},
+    {"path_cosine", "equality", "cornell", 5, 0},
+    {"path_nee", "analytic", "mixed_lights", 1, 1},
+    {"path_nee", "analytic", "plane_tilted", 1, 0},
+    {"path_nee", "furnace", "furnace_sphere", 5, 1},
+    {"path_nee", "furnace", "furnace_sphere", 8, 0},
+    {"path_nee", "furnace", "furnace_checker", 4, 1},
+    {"path_nee", "equality", "cornell", 5, 1},
+    {"path_nee", "equality", "bright_room", 3, 0},
+    {"path_mis", "analytic", "five_lights", 1, 1},
+    {"path_mis", "analytic", "mixed_lights", 1, 1},
+    {"path_mis", "analytic", "plane_tilted", 1, 0},
+    {"path_mis", "analytic", "sky", 1, 0},
+    {"path_mis", "furnace", "furnace_sphere", 5, 1},
+    {"path_mis", "furnace", "furnace_sphere", 8, 0},
+    {"path_mis", "furnace", "furnace_checker", 8, 1},
+};
+
+int lc_suite_has(const lc_suite *suite, const lc_claim *claim)
+{
+    int is_quick = strcmp(suite->name, "quick") == 0, varies = 0;
+    for (size_t i = 0; i < sizeof chosen_rows / sizeof chosen_rows[0] && claim->estimator && !claim->exact; ++i) {
+        if (strcmp(chosen_rows[i].estimator, claim->estimator->name) != 0)
+            continue;
+        varies = 1;
+        if (chosen_rows[i].max_bounces == claim->max_bounces && strcmp(chosen_rows[i].check, claim->check->name) == 0 &&
+            strcmp(chosen_rows[i].scene, lc_scene_description(claim->scene)->name) == 0)
+            return !is_quick || chosen_rows[i].is_quick;
+    }
+    return !varies && !(is_quick && claim->full_only);
 }
 
 double lc_cell_noise(const char *scene, const char *estimator, int max_bounces)
