@@ -14,8 +14,14 @@
     X(path_cosine) \
     X(path_nee) \
     X(path_mis) \
+    X(path_mis_power) \
+    X(path_rr) \
+    X(path_analog) \
     X(mirror)            \
-    X(dielectric)
+    X(dielectric) \
+    X(path_full) \
+    X(direct_mis) \
+    X(light_solid_angle)
 
 #define DECLARE(id) extern const lc_estimator lc_estimator_##id;
 #define MEMBER(id) &lc_estimator_##id,

@@ -76,6 +76,10 @@ lc_ray lc_camera_frame_ray(const lc_camera_frame *frame, double x, double y);
 void lc_tangents(lc_vec3 n, lc_vec3 *s, lc_vec3 *t);
 lc_vec3 lc_uniform_sphere(double u, double v);
 
+/* solid_angle.c: fills wi, distance, p, n, pdf_solid, shape and part of a place on the shape, uniform over the directions in which the
+ * hit sees it; 0 where that is not known of such a shape. */
+int lc_sample_solid(const lc_scene *scene, int index, const lc_hit *hit, double u, double v, lc_light_sample *out);
+
 /* lc_material_at() without a word in the log. */
 lc_material lc_surface_material(const lc_scene *scene, const lc_hit *hit);
 /* What the front of a shape emits at p [W sr^-1 m^-2]. */

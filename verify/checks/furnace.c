@@ -75,7 +75,9 @@ static lc_status plan_inside(const lc_check *self, lc_claims *claims, const lc_s
     int is_plain = estimator->lobes == LC_DIFFUSE;
     for (int k = 1; k <= 8 && k <= estimator->max_bounces; ++k) {
         lc_claim *claim;
-        if (!is_plain && (k == 3 || k == 6 || k == 7)) /* among diffuse walls mirror and dielectric are path once more */
+        if (k == 3 || k == 6 || k == 7) /* these tell little beside their neighbours, */
+            continue;
+        if (k == 4 && !is_plain) /* and among diffuse walls mirror and dielectric are path once more */
             continue;
         lc_status status = add(&claim, claims, self, scene, estimator, k, err);
         if (status != LC_OK)
