@@ -109,8 +109,6 @@ static lc_status verify(void *user, const lc_strings *rest, lc_error *err)
         return lc_fail(err, LC_BAD_INPUT, "unexpected argument '%s'", rest->items[0]);
     lc_verify_options options;
     lc_report report;
-    if (a->measure)
-        return lc_measure_cells(load_scene, print_line, NULL, err);
     lc_verify_options_init(&options);
     options.suite = lc_suite_find(a->suite);
     options.margin = a->margin;
@@ -126,6 +124,8 @@ static lc_status verify(void *user, const lc_strings *rest, lc_error *err)
         status = lc_cli_find_estimator(&options.estimator, a->estimator, err);
     if (status != LC_OK)
         return status;
+    if (a->measure)
+        return lc_measure_cells(load_scene, options.estimator, a->scene, print_line, NULL, err);
     status = lc_verify(&report, &options, load_scene, err);
     if (status == LC_OK && report.count == 0)
         status = lc_fail(err, LC_BAD_INPUT, "nothing to verify: no check applies to what was selected");

@@ -154,7 +154,7 @@ int lc_trace(const lc_scene *scene, const lc_hit *from, lc_vec3 wi, lc_hit *next
 
 /* A place on a light, as seen from a hit. */
 typedef struct lc_light_sample {
-    int is_delta;      /* 1: a point or directional light; it has no area: use `irradiance`, not the last four */
+    int is_delta;      /* 1: a point or directional light; it has no area: use `irradiance`, not what is below */
     lc_vec3 wi;        /* unit direction from the hit to the light */
     double distance;   /* [m]; INFINITY for a directional light */
     lc_rgb irradiance; /* delta: received by a surface that faces wi [W m^-2]: I / d^2, or E0 */
@@ -162,6 +162,7 @@ typedef struct lc_light_sample {
     lc_vec3 n;         /* area: unit normal there, on the side that emits */
     lc_rgb radiance;   /* area: emitted from p on the side of n, whatever side wi sees [W sr^-1 m^-2] */
     double pdf_area;   /* area: density of p with respect to area [1/m^2] */
+    double pdf_solid;  /* area, by lc_light_sample_solid() only: density of wi over directions [1/sr] */
     int shape, part;   /* the host's own */
 } lc_light_sample;
 
@@ -171,8 +172,16 @@ int lc_light_count(const lc_scene *scene);
 /* Picks a point on light `i`, 0 <= i < lc_light_count(), uniformly over its area; a moving light is where it is at hit->time. */
 void lc_light_sample_one(const lc_scene *scene, int i, const lc_hit *hit, lc_sampler *sampler, lc_light_sample *out);
 
+/* The same for a direction: uniform over the solid angle in which the hit sees light `i`, if that is a sphere or a rectangle (Urena,
+ * Fajardo, King 2013); other shapes by area. Its density is pdf_solid; 0 where wi sees the back of a shape picked by area. */
+void lc_light_sample_solid(const lc_scene *scene, int i, const lc_hit *hit, lc_sampler *sampler, lc_light_sample *out);
+
 /* Picks a point uniformly over the union of ALL emitting area (then pdf_area = 1 / total area); returns 0 where nothing has area. */
 int lc_light_sample_union(const lc_scene *scene, const lc_hit *hit, lc_sampler *sampler, lc_light_sample *out);
+
+/* The pdf_area that lc_light_sample_one() gives a point of the light which a ray has found at `hit` [1/m^2]: what its
+ * density would have been, had the light been sampled instead. 0 on a miss, and where nothing emits. */
+double lc_light_pdf_area(const lc_scene *scene, const lc_hit *hit);
 
 /* 1 when nothing stands between the hit and the light's point, else 0. */
 int lc_visible(const lc_scene *scene, const lc_hit *hit, const lc_light_sample *light);

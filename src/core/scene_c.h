@@ -107,6 +107,10 @@ void lc_camera_see_packet(const lc_scene *scene, const lc_ray rays[LC_PACKET], l
 void lc_tangents(lc_vec3 n, lc_vec3 *s, lc_vec3 *t);
 lc_vec3 lc_uniform_sphere(double u, double v);
 
+/* solid_angle.c: fills wi, distance, p, n, pdf_solid, shape and part of a place on the shape, uniform over the directions in which the
+ * hit sees it; 0 where that is not known of such a shape. */
+int lc_sample_solid(const lc_scene *scene, int index, const lc_hit *hit, double u, double v, lc_light_sample *out);
+
 /* lc_material_at() without a word in the log. */
 lc_material lc_surface_material(const lc_scene *scene, const lc_hit *hit);
 /* What the front of a shape emits at p, where p is at time 0 [W sr^-1 m^-2]. */

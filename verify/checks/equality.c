@@ -10,12 +10,12 @@
 
 /* The hubs, first choice first: of direct light, and of all bounces. */
 static const char *const direct_hubs[] = {"light_direct"};
-static const char *const deep_hubs[] = {"path", "mirror", "dielectric"};
+static const char *const deep_hubs[] = {"path_mis", "path_full", "path", "mirror", "dielectric"};
 
 static const lc_estimator *find_hub(const lc_scene *scene, const lc_estimator *estimator, const char *const *hubs,
-                                    int count, int bounces)
+                                    size_t count, int bounces)
 {
-    for (int i = 0; i < count; ++i)
+    for (size_t i = 0; i < count; ++i)
         for (const lc_estimator *const *e = lc_estimators; *e; ++e)
             if (strcmp((*e)->name, hubs[i]) == 0 && (*e)->max_bounces >= bounces &&
                 lc_language(scene, *e) == lc_language(scene, estimator))
@@ -63,12 +63,16 @@ static lc_status plan(const lc_check *self, lc_claims *claims, const lc_scene *s
     for (size_t i = 0; i < sizeof quick_direct / sizeof quick_direct[0]; ++i)
         is_quick |= strcmp(desc->name, quick_direct[i]) == 0 && (!is_deep || is_deep_hub);
     lc_status status = LC_OK;
-    if (estimator->lobes & lc_scene_lobes(scene) & LC_DIFFUSE)
-        status = add(self, claims, scene, estimator, find_hub(scene, estimator, direct_hubs, 1, 1), 1, !is_quick, err);
     int bounces = desc->max_bounces < estimator->max_bounces ? desc->max_bounces : estimator->max_bounces;
-    int is_quick_deep = strcmp(desc->name, estimator->lobes & LC_GLASS ? "bright_mirrors" : "bright_room") == 0;
-    if (status == LC_OK && bounces > 1)
-        status = add(self, claims, scene, estimator, find_hub(scene, estimator, deep_hubs, 3, bounces), bounces,
+    /* Of mirror and dielectric the deep row tells what the direct one would. */
+    int is_told = bounces > 1 && !is_quick && estimator->lobes & LC_MIRROR;
+    if (estimator->lobes & lc_scene_lobes(scene) & LC_DIFFUSE && !is_told)
+        status = add(self, claims, scene, estimator, find_hub(scene, estimator, direct_hubs, 1, 1), 1, !is_quick, err);
+    int is_quick_deep = strcmp(desc->name, estimator->lobes & LC_GLASS ? "bright_mirrors" : "bright_room") == 0 ||
+                        (estimator->emitters & LC_POINT && strncmp(desc->name, "cornell", 7) == 0);
+    int is_scaled = strcmp(desc->name, "cornell_small") == 0 || strcmp(desc->name, "cornell_large") == 0;
+    if (status == LC_OK && bounces > 1 && !(is_scaled && estimator->lobes & LC_MIRROR)) /* path tells of the scale */
+        status = add(self, claims, scene, estimator, find_hub(scene, estimator, deep_hubs, sizeof deep_hubs / sizeof deep_hubs[0], bounces), bounces,
                      !is_quick_deep, err);
     return status;
 }

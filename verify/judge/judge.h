@@ -30,6 +30,8 @@ extern const char *const lc_suite_scenes[]; /* ends with NULL */
 extern const lc_cell lc_cells[];            /* ends with scene = NULL */
 
 const lc_suite *lc_suite_find(const char *name);
+/* 1 when the suite judges this claim. The quick one leaves out what is full_only; an estimator that varies another has chosen rows only. */
+int lc_suite_has(const lc_suite *suite, const lc_claim *claim);
 /* c of that cell; NAN when the table does not know it (then a discarded pilot measures it). */
 double lc_cell_noise(const char *scene, const char *estimator, int max_bounces);
 /* Samples a pixel that a row plans for, so that hardly any ends undecided: (c z / margin)^2 over the pixels, z = 11; at most 2^62. */
@@ -58,8 +60,10 @@ void lc_verify_options_init(lc_verify_options *options);
 typedef lc_status lc_load_scene_fn(lc_scene **out, const char *name, lc_error *err);
 lc_status lc_verify(lc_report *report, const lc_verify_options *options, lc_load_scene_fn *load, lc_error *err);
 
-/* Measures c of every cell of all suites, and calls `line` with each as a row of lc_cells: how that table is made. */
-lc_status lc_measure_cells(lc_load_scene_fn *load, void (*line)(void *user, const char *text), void *user, lc_error *err);
+/* Measures c of every cell of all suites (of one estimator, of one scene, where not NULL), and calls `line` with each as a row of
+ * lc_cells: how that table is made. */
+lc_status lc_measure_cells(lc_load_scene_fn *load, const lc_estimator *estimator, const char *scene,
+                           void (*line)(void *user, const char *text), void *user, lc_error *err);
 
 /* ---- two images ------------------------------------------------------------------------------------------------ */
 

@@ -45,12 +45,12 @@ static lc_status plan_scene(lc_claims *claims, int *not_applicable, const lc_ver
     return LC_OK;
 }
 
-/* Claims for the full suite only are dropped from the quick one, before rows are counted. */
-static void drop_full_only(lc_claims *claims)
+/* Before rows are counted. */
+static void keep_suite(lc_claims *claims, const lc_suite *suite)
 {
     int kept = 0;
     for (int i = 0; i < claims->count; ++i)
-        if (!claims->items[i].full_only)
+        if (lc_suite_has(suite, &claims->items[i]))
             claims->items[kept++] = claims->items[i];
     claims->count = kept;
 }
@@ -123,8 +123,7 @@ lc_status lc_verify(lc_report *report, const lc_verify_options *options, lc_load
             status = plan_scene(&claims, &report->not_applicable, options, scenes[scene_count++], err);
     }
     if (status == LC_OK) {
-        if (strcmp(options->suite->name, "quick") == 0)
-            drop_full_only(&claims);
+        keep_suite(&claims, options->suite);
         session.rows = claims.count;
         lc_budget budget = {options->false_fail, options->false_pass, session.rows, 3, LC_MOST_LOOKS};
         lc_budget_text(report->budget, sizeof report->budget, &budget, 64, 64);
@@ -144,7 +143,7 @@ static lc_status measure_scene(const lc_claims *claims, lc_session *session, voi
 {
     for (int i = 0; i < claims->count; ++i) {
         const lc_claim *claim = &claims->items[i];
-        int known = claim->exact;
+        int known = claim->exact || (session->options->estimator && session->options->estimator != claim->estimator);
         for (int j = 0; j < i; ++j)
             known |= claims->items[j].estimator == claim->estimator &&
                      claims->items[j].max_bounces == claim->max_bounces && !claims->items[j].exact;
@@ -163,13 +162,16 @@ static lc_status measure_scene(const lc_claims *claims, lc_session *session, voi
     return LC_OK;
 }
 
-lc_status lc_measure_cells(lc_load_scene_fn *load, void (*line)(void *user, const char *text), void *user,
-                           lc_error *err)
+lc_status lc_measure_cells(lc_load_scene_fn *load, const lc_estimator *estimator, const char *only,
+                           void (*line)(void *user, const char *text), void *user, lc_error *err)
 {
     lc_verify_options options;
     lc_status status = LC_OK;
     lc_verify_options_init(&options);
+    options.estimator = estimator;
     for (int i = 0; lc_suite_scenes[i] && status == LC_OK; ++i) {
+        if (only && strcmp(only, lc_suite_scenes[i]) != 0)
+            continue;
         lc_session session = {.options = &options};
         lc_claims claims = {NULL, 0};
         lc_scene *scene = NULL;

@@ -59,7 +59,34 @@
     X(glossy_one_direction, "glossy_direct") \
     X(light_lamp_at_rest, "light_direct") \
     X(light_shadow_at_rest, "light_direct") \
-    X(hemisphere_no_time, "hemisphere_direct")
+    X(hemisphere_no_time, "hemisphere_direct") \
+    X(cosine_again, "path_cosine") \
+    X(cosine_no_pi, "path_cosine") \
+    X(nee_counted_twice, "path_nee") \
+    X(nee_camera_lost, "path_nee") \
+    X(nee_sky_lost, "path_nee") \
+    X(nee_one_deeper, "path_nee") \
+    X(nee_one_short, "path_nee") \
+    X(nee_no_cosine, "path_nee") \
+    X(nee_no_count, "path_nee") \
+    X(mis_hit_weight_one, "path_mis") \
+    X(mis_area_density, "path_mis") \
+    X(mis_delta_weighted, "path_mis") \
+    X(mis_sum_not_one, "path_mis") \
+    X(mis_power_hit_weight_one, "path_mis_power") \
+    X(mis_power_area_density, "path_mis_power") \
+    X(rr_not_divided, "path_rr") \
+    X(rr_divided_twice, "path_rr") \
+    X(analog_weighted_again, "path_analog") \
+    X(analog_dies_twice, "path_analog") \
+    X(full_lost_after_delta, "path_full") \
+    X(full_not_divided, "path_full") \
+    X(full_hit_weight_one, "path_full") \
+    X(full_survival_forgotten, "path_full") \
+    X(direct_mis_hit_weight_one, "direct_mis") \
+    X(direct_mis_area_density, "direct_mis") \
+    X(solid_area_points, "light_solid_angle") \
+    X(solid_jacobian_again, "light_solid_angle")
 
 #define DECLARE(id, of) extern const lc_estimator lc_estimator_##id;
 #define MEMBER(id, of) {&lc_estimator_##id, of},

@@ -41,5 +41,6 @@ Suite *lc_suite_povray(void);
 Suite *lc_suite_verify(void);
 Suite *lc_suite_mutants(void);
 Suite *lc_suite_sensitivity(void);
+Suite *lc_suite_nee(void);
 
 #endif
