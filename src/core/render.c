@@ -15,7 +15,7 @@ typedef struct job {
     const lc_scene *scene;
     const lc_estimator *estimator;
     const lc_render_options *options;
-    lc_camera_frame frame;
+    lc_camera_frame frame, minus_frame[LC_MAX_TERMS];
     int tiles_x, tiles;
     pthread_mutex_t lock; /* of all that follows */
     int next_tile, done;
@@ -43,18 +43,39 @@ static lc_rgb one_sample(const lc_scene *scene, const lc_estimator *estimator, c
     return estimator->radiance(scene, &ray, &hit, bounces, sampler);
 }
 
+/* The sample less the terms, each from the same random numbers; returns 0, with the value that is bad, where one is. */
+static int sample_of(lc_rgb *out, const job *j, int x, int y, uint32_t pixel, uint64_t s)
+{
+    const lc_render_options *o = j->options;
+    lc_options bounces = {o->min_bounces, o->max_bounces};
+    lc_sampler sampler;
+    lc_sampler_start(&sampler, o->seed, o->arm, pixel, (uint32_t)s);
+    *out = one_sample(j->scene, j->estimator, &bounces, &sampler, &j->frame, x, y);
+    if (is_bad(*out))
+        return 0;
+    for (int i = 0; i < o->minus_count; ++i) {
+        const lc_term *term = &o->minus[i];
+        lc_options fewer = {o->min_bounces - term->shift, o->max_bounces - term->shift};
+        lc_sampler_start(&sampler, o->seed, o->arm, pixel, (uint32_t)s);
+        lc_rgb c = one_sample(term->scene, j->estimator, &fewer, &sampler, &j->minus_frame[i], x, y);
+        if (is_bad(c)) {
+            *out = c;
+            return 0;
+        }
+        *out = lc_rgb_add(*out, lc_rgb_scale(-term->factor, c));
+    }
+    return 1;
+}
+
 static void render_pixel(const job *j, int x, int y, bad_samples *bad)
 {
     const lc_render_options *o = j->options;
     uint32_t pixel = (uint32_t)(y * j->film->width + x);
-    lc_options bounces = {o->min_bounces, o->max_bounces};
     double block[LC_BLOCK][3];
     int filled = 0;
     for (uint64_t s = o->first; s < o->first + o->count; ++s) {
-        lc_sampler sampler;
-        lc_sampler_start(&sampler, o->seed, o->arm, pixel, (uint32_t)s);
-        lc_rgb c = one_sample(j->scene, j->estimator, &bounces, &sampler, &j->frame, x, y);
-        if (is_bad(c)) {
+        lc_rgb c;
+        if (!sample_of(&c, j, x, y, pixel, s)) {
             if (bad->count++ == 0 || pixel < bad->pixel) {
                 bad->pixel = pixel;
                 bad->sample = s;
@@ -148,6 +169,14 @@ static lc_status check_options(const lc_film *film, const lc_scene *scene, const
     if (o->shards > 1 && (o->shard < 0 || o->shard >= o->shards))
         return lc_fail(err, LC_BAD_INPUT, "%s: shard %d of %d, expected 0 to %d", scene_name, o->shard, o->shards,
                        o->shards - 1);
+    if (o->minus_count < 0 || o->minus_count > LC_MAX_TERMS)
+        return lc_fail(err, LC_BAD_INPUT, "%s: less %d scenes, expected at most %d", scene_name, o->minus_count,
+                       LC_MAX_TERMS);
+    for (int i = 0; i < o->minus_count; ++i)
+        if (o->minus[i].shift > o->min_bounces || o->max_bounces - o->minus[i].shift > estimator->max_bounces)
+            return lc_fail(err, LC_BAD_INPUT, "%s: bounces %d to %d over another scene, expected 0 to %d", scene_name,
+                           o->min_bounces - o->minus[i].shift, o->max_bounces - o->minus[i].shift,
+                           estimator->max_bounces);
     if (film->count == 0)
         return LC_OK;
     if (film->seed != o->seed || film->arm != o->arm || film->first + film->count != o->first ||
@@ -177,6 +206,8 @@ lc_status lc_render(lc_film *film, const lc_scene *scene, const lc_estimator *es
              .lock = PTHREAD_MUTEX_INITIALIZER,
              .next_tile = o.shard};
     lc_camera_prepare(&j.frame, &scene->desc.camera, film->width, film->height);
+    for (int i = 0; i < o.minus_count; ++i)
+        lc_camera_prepare(&j.minus_frame[i], &o.minus[i].scene->desc.camera, film->width, film->height);
     j.tiles = j.tiles_x * ((film->height + LC_TILE - 1) / LC_TILE);
 
     long cores = o.threads > 0 ? o.threads : sysconf(_SC_NPROCESSORS_ONLN);

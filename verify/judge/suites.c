@@ -48,6 +48,8 @@ const char *const lc_suite_scenes[] = {
     "cornell_glass",
     "bright_room",
     "bright_mirrors",
+    "mirror_wall",
+    "two_patches",
     NULL,
 };
 

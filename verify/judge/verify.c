@@ -105,7 +105,7 @@ lc_status lc_verify(lc_report *report, const lc_verify_options *options, lc_load
 {
     lc_scene *scenes[64] = {NULL};
     int scene_count = 0;
-    lc_claims claims = {NULL, 0};
+    lc_claims claims = {.count = 0};
     lc_session session = {.options = options, .margin = options->margin > 0 ? options->margin : options->suite->margin};
     lc_status status = LC_OK;
     memset(report, 0, sizeof *report);
@@ -167,7 +167,7 @@ lc_status lc_measure_cells(lc_load_scene_fn *load, void (*line)(void *user, cons
     lc_verify_options_init(&options);
     for (int i = 0; lc_suite_scenes[i] && status == LC_OK; ++i) {
         lc_session session = {.options = &options};
-        lc_claims claims = {NULL, 0};
+        lc_claims claims = {.count = 0};
         lc_scene *scene = NULL;
         int not_applicable = 0;
         status = load(&scene, lc_suite_scenes[i], err);

@@ -249,7 +249,7 @@ END_TEST
 /* The statistical claims that a suite makes about a scene. */
 static lc_claims claims_about(const lc_suite *suite, const lc_scene *scene)
 {
-    lc_claims claims = {NULL, 0};
+    lc_claims claims = {.count = 0};
     lc_error err = {""};
     for (const lc_estimator *const *e = lc_estimators; *e; ++e)
         for (const lc_check *const *c = lc_checks; *c; ++c)
