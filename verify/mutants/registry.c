@@ -53,7 +53,17 @@
     X(dielectric_weighted_again, "dielectric") \
     X(dielectric_never_reflects, "dielectric") \
     X(dielectric_swapped, "dielectric") \
-    X(dielectric_straight, "dielectric")
+    X(dielectric_straight, "dielectric") \
+    X(light_clamped, "light_direct") \
+    X(light_ignores_dim, "light_direct") \
+    X(light_ignores_near, "light_direct") \
+    X(light_softened, "light_direct") \
+    X(three_point_softened, "three_point") \
+    X(hemisphere_world_frame, "hemisphere_direct") \
+    X(path_clamped, "path") \
+    X(path_ends_when_dim, "path") \
+    X(path_roulette_undivided, "path") \
+    X(mirror_world_up, "mirror")
 
 #define DECLARE(id, of) extern const lc_estimator lc_estimator_##id;
 #define MEMBER(id, of) {&lc_estimator_##id, of},

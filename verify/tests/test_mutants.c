@@ -64,6 +64,16 @@ static const struct row {
     {"dielectric_never_reflects", "specular", "glass_blend"},
     {"dielectric_swapped", "specular", "glass_blend"},
     {"dielectric_straight", "specular", "glass_slab"},
+    {"light_clamped", "metamorphic", "five_lights"},
+    {"light_ignores_dim", "metamorphic", "five_lights"},
+    {"light_ignores_near", "metamorphic", "five_lights"},
+    {"light_softened", "metamorphic", "five_lights"},
+    {"three_point_softened", "metamorphic", "five_lights"},
+    {"hemisphere_world_frame", "metamorphic", "five_lights"},
+    {"path_clamped", "metamorphic", "bright_mirrors"},
+    {"path_ends_when_dim", "metamorphic", "bright_mirrors"},
+    {"path_roulette_undivided", "metamorphic", "bright_mirrors"},
+    {"mirror_world_up", "metamorphic", "bright_mirrors"},
 };
 enum { ROWS = sizeof rows / sizeof rows[0] };
 
