@@ -7,6 +7,7 @@
 
 #include "estimators/registry.h"
 #include "verify/checks/checks.h"
+#include "verify/checks/family.h"
 
 /* The hubs, first choice first: of direct light, and of all bounces. */
 static const char *const direct_hubs[] = {"light_direct"};
@@ -51,6 +52,8 @@ static lc_status plan(const lc_check *self, lc_claims *claims, const lc_scene *s
     for (size_t i = 0; i < sizeof never / sizeof never[0]; ++i)
         if (strcmp(desc->name, never[i]) == 0)
             return LC_OK;
+    if (lc_family_find(desc->name)) /* each has a closed form */
+        return LC_OK;
     if (emitters == 0 || (estimator->lobes & lc_scene_lobes(scene)) == 0 || estimator->max_bounces < 1)
         return LC_OK;
     /* The quick suite: direct light where there is no closed form, or several lights; path tracers where lamps are so large that uniform directions

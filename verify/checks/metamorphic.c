@@ -267,7 +267,10 @@ static lc_status add(const lc_check *self, lc_claims *claims, const struct row *
     claim.whole_only = relation->whole_only;
     claim.slack = row->slack;
     /* Where there is one reflection, for who knows no more: of more, a path tracer has a scene of its own. */
-    claim.full_only = row->full_only || (row->bounces == 1) != (estimator->max_bounces == 1);
+    int is_apt = (row->bounces == 1) == (estimator->max_bounces == 1);
+    if (!is_apt && row->slack > 1)
+        return LC_OK;
+    claim.full_only = row->full_only || !is_apt;
     claim.tolerance = 1e-9;
     claim.source = relation->source;
     claim.term_count = relation->make == make_one_light ? lc_transform_lights(lc_scene_description(scene)) : 1;

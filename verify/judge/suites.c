@@ -50,6 +50,13 @@ const char *const lc_suite_scenes[] = {
     "bright_mirrors",
     "mirror_wall",
     "two_patches",
+    "random_rectangle",
+    "random_disk",
+    "random_sphere",
+    "random_lights",
+    "random_furnace",
+    "random_corridor",
+    "random_slab",
     NULL,
 };
 

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "estimators/registry.h"
+#include "verify/checks/family.h"
 #include "verify/judge/judge_c.h"
 
 void lc_verify_options_init(lc_verify_options *options)
@@ -17,6 +18,20 @@ void lc_verify_options_init(lc_verify_options *options)
     options->false_fail = options->false_pass = 1e-6;
     options->seed = 1;
     options->program = "build/lightcheck";
+}
+
+lc_status lc_suite_scene(lc_scene **out, const char *name, uint64_t seed, lc_load_scene_fn *load, lc_error *err)
+{
+    const lc_family *family = lc_family_find(name);
+    lc_scene_desc desc;
+    if (!family)
+        return load(out, name, err);
+    lc_status status = lc_family_describe(&desc, family, seed, err);
+    if (status != LC_OK)
+        return status;
+    status = lc_scene_build(out, &desc, err);
+    lc_scene_desc_release(&desc);
+    return status;
 }
 
 static lc_status plan_pair(lc_claims *claims, int *not_applicable, const lc_scene *scene, const lc_estimator *estimator,
@@ -115,7 +130,7 @@ lc_status lc_verify(lc_report *report, const lc_verify_options *options, lc_load
     snprintf(report->suite, sizeof report->suite, "%s", options->suite->name);
     status = plan_host(&claims, err);
     for (int i = 0; lc_suite_scenes[i] && status == LC_OK; ++i) {
-        status = load(&scenes[scene_count], lc_suite_scenes[i], err);
+        status = lc_suite_scene(&scenes[scene_count], lc_suite_scenes[i], options->seed, load, err);
         if (status == LC_OK)
             status = plan_scene(&claims, &report->not_applicable, options, scenes[scene_count++], err);
     }
@@ -166,6 +181,8 @@ lc_status lc_measure_cells(lc_load_scene_fn *load, void (*line)(void *user, cons
     lc_status status = LC_OK;
     lc_verify_options_init(&options);
     for (int i = 0; lc_suite_scenes[i] && status == LC_OK; ++i) {
+        if (lc_family_find(lc_suite_scenes[i]))
+            continue; /* each of its scenes has another noise: a pilot measures it */
         lc_session session = {.options = &options};
         lc_claims claims = {.count = 0};
         lc_scene *scene = NULL;

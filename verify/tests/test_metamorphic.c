@@ -290,7 +290,7 @@ START_TEST(each_estimator_has_relations)
     for (const char *const *name = lc_suite_scenes; *name; ++name) {
         lc_scene *scene;
         lc_claims claims = {.count = 0};
-        ck_assert_msg(load_small(&scene, *name, &err) == LC_OK, "%s", err.text);
+        ck_assert_msg(lc_suite_scene(&scene, *name, 1, load_small, &err) == LC_OK, "%s", err.text);
         for (const lc_check *const *check = lc_checks; *check; ++check)
             for (int i = 0; strcmp((*check)->name, "metamorphic") == 0 && lc_estimators[i]; ++i)
                 ck_assert_msg((*check)->plan(*check, &claims, scene, lc_estimators[i], &err) == LC_OK, "%s", err.text);

@@ -9,7 +9,9 @@
 #include "estimators/registry.h"
 #include "io/scene_path.h"
 #include "io/scene_read.h"
+#include "verify/checks/family.h"
 #include "verify/judge/judge.h"
+#include "verify/stats/stats.h"
 #include "verify/tests/scene_help.h"
 
 enum { SIDE = 16 };
@@ -265,7 +267,25 @@ static lc_claims claims_about(const lc_suite *suite, const lc_scene *scene)
 
 static int same_film(const lc_claim *a, const lc_claim *b)
 {
-    return a->estimator == b->estimator && a->min_bounces == b->min_bounces && a->max_bounces == b->max_bounces;
+    return a->estimator == b->estimator && a->min_bounces == b->min_bounces && a->max_bounces == b->max_bounces &&
+           !a->term_count && !b->term_count;
+}
+
+static double margin_of(const lc_suite *suite, const lc_claim *claim, double c)
+{
+    return fmax(suite->margin * (claim->slack > 0 ? claim->slack : 1) * fmax(1, c), claim->margin);
+}
+
+/* Films of a relation: over the scene and each term; paired, the scene's once more. Of powers of two all samples agree, so that one
+ * block is enough; else the first look is. */
+static double planned_of_relation(const lc_suite *suite, const lc_claim *claim)
+{
+    const lc_scene_desc *desc = lc_scene_description(claim->scene);
+    double pixels = (double)desc->width * desc->height, arms = 1 + claim->term_count + (claim->paired ? 1 : 0);
+    if (claim->paired && claim->slack <= 1)
+        return arms * LC_BLOCK * pixels;
+    return arms * fmax(LC_LEAST_SAMPLES * pixels,
+                       (double)lc_planned_samples(1.5, 1.5 * margin_of(suite, claim, 1), 1));
 }
 
 /* What a suite plans to render of a scene: each film once, for the claim that wants most of it. */
@@ -274,18 +294,24 @@ static double planned_of(const lc_suite *suite, const char *name)
     lc_scene *scene;
     lc_error err = {""};
     double planned = 0;
-    ck_assert_msg(load_small(&scene, name, &err) == LC_OK, "%s", err.text);
+    ck_assert_msg(lc_suite_scene(&scene, name, 1, load_small, &err) == LC_OK, "%s", err.text);
     lc_claims claims = claims_about(suite, scene);
     for (int i = 0; i < claims.count; ++i) {
         const lc_claim *claim = &claims.items[i];
         double c = lc_cell_noise(name, claim->estimator->name, claim->max_bounces), most = 0;
         int is_first = 1;
+        if (claim->term_count) {
+            planned += planned_of_relation(suite, claim);
+            continue;
+        }
+        if (lc_family_find(name))
+            c = claim->may_be_still ? 0 : 1; /* drawn: unknown, and more noise asks for no more samples */
         for (int k = 0; k < claims.count && !isnan(c); ++k) {
             if (!same_film(claim, &claims.items[k]))
                 continue;
             const lc_claim *other = &claims.items[k];
             double hub = other->other ? lc_cell_noise(name, other->other->name, other->max_bounces) : 0;
-            double margin = fmax(suite->margin * fmax(1, c), other->margin);
+            double margin = margin_of(suite, other, c);
             is_first &= k >= i;
             most = fmax(most, (double)lc_planned_samples(hypot(c, isnan(hub) ? 0 : hub), margin, 1));
         }

@@ -39,5 +39,6 @@ Suite *lc_suite_povray(void);
 Suite *lc_suite_verify(void);
 Suite *lc_suite_mutants(void);
 Suite *lc_suite_metamorphic(void);
+Suite *lc_suite_family(void);
 
 #endif
