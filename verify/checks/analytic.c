@@ -38,7 +38,7 @@ static lc_status direct_view(lc_rgb *value, int *kind, const lc_scene *scene, co
     return status;
 }
 
-static lc_status expect_direct(lc_expected *out, const lc_claim *claim, const lc_scene *scene, int threads,
+lc_status lc_expect_direct(lc_expected *out, const lc_claim *claim, const lc_scene *scene, int threads,
                                lc_error *err)
 {
     return lc_expect_view(out, direct_view, NULL, scene, claim->tolerance, threads, err);
@@ -63,28 +63,28 @@ static const struct {
     double tolerance;
     const char *source;
 } rows[] = {
-    {"plane_point", expect_direct, 1e-5, "E = I cos / d^2"},
-    {"plane_directional", expect_direct, 1e-5, "E = E0 cos, Lo = rho E / pi"},
-    {"plane_rectangle", expect_direct, 1e-5, "Lambert's polygon formula"},
-    {"plane_tilted", expect_direct, 1e-5, "Lambert's polygon formula, clipped to the horizon"},
-    {"plane_disk", expect_direct, 1e-5, "disk to a point, quadrature to 1e-9 (Howell B-13 when parallel)"},
-    {"plane_sphere", expect_direct, 1e-5, "sphere to a point, Howell B-43"},
-    {"plane_cube", expect_direct, 1e-5, "Lambert's polygon formula for six faces"},
-    {"lamp_100w", expect_direct, 1e-5, "L = Phi / (pi A), then Lambert's polygon formula"},
-    {"two_lights", expect_direct, 1e-5, "Lambert's polygon formula, two lamps"},
-    {"five_lights", expect_direct, 1e-5, "closed forms of five lamps, added"},
-    {"occluder", expect_direct, 1e-5, "quadrature over the visible part of the lamps"},
-    {"cornell", expect_direct, 1e-5,
+    {"plane_point", lc_expect_direct, 1e-5, "E = I cos / d^2"},
+    {"plane_directional", lc_expect_direct, 1e-5, "E = E0 cos, Lo = rho E / pi"},
+    {"plane_rectangle", lc_expect_direct, 1e-5, "Lambert's polygon formula"},
+    {"plane_tilted", lc_expect_direct, 1e-5, "Lambert's polygon formula, clipped to the horizon"},
+    {"plane_disk", lc_expect_direct, 1e-5, "disk to a point, quadrature to 1e-9 (Howell B-13 when parallel)"},
+    {"plane_sphere", lc_expect_direct, 1e-5, "sphere to a point, Howell B-43"},
+    {"plane_cube", lc_expect_direct, 1e-5, "Lambert's polygon formula for six faces"},
+    {"lamp_100w", lc_expect_direct, 1e-5, "L = Phi / (pi A), then Lambert's polygon formula"},
+    {"two_lights", lc_expect_direct, 1e-5, "Lambert's polygon formula, two lamps"},
+    {"five_lights", lc_expect_direct, 1e-5, "closed forms of five lamps, added"},
+    {"occluder", lc_expect_direct, 1e-5, "quadrature over the visible part of the lamps"},
+    {"cornell", lc_expect_direct, 1e-5,
      "Lambert's polygon formula over the visible part of the lamp, clipped by the boxes"},
-    {"mixed_lights", expect_direct, 1e-5, "area, point and directional light, added"},
-    {"textured_lamp", expect_direct, 1e-5, "Lambert's polygon formula for each cell of the checkerboard"},
-    {"flipped_twosided", expect_direct, 1e-5, "Lambert's polygon formula"},
-    {"sky", expect_direct, 1e-5, "Lo = rho L under a constant sky"},
-    {"two_patches", expect_direct, 1e-5, "Lambert's polygon formula"},
-    {"random_rectangle", expect_direct, 1e-5, "Lambert's polygon formula, a lamp that was drawn"},
-    {"random_disk", expect_direct, 1e-5, "ellipse to a point, quadrature to 1e-9, a lamp that was drawn"},
-    {"random_sphere", expect_direct, 1e-5, "sphere to a point, Howell B-43, a lamp that was drawn"},
-    {"random_lights", expect_direct, 1e-5, "closed forms of three lamps that were drawn, added"},
+    {"mixed_lights", lc_expect_direct, 1e-5, "area, point and directional light, added"},
+    {"textured_lamp", lc_expect_direct, 1e-5, "Lambert's polygon formula for each cell of the checkerboard"},
+    {"flipped_twosided", lc_expect_direct, 1e-5, "Lambert's polygon formula"},
+    {"sky", lc_expect_direct, 1e-5, "Lo = rho L under a constant sky"},
+    {"two_patches", lc_expect_direct, 1e-5, "Lambert's polygon formula"},
+    {"random_rectangle", lc_expect_direct, 1e-5, "Lambert's polygon formula, a lamp that was drawn"},
+    {"random_disk", lc_expect_direct, 1e-5, "ellipse to a point, quadrature to 1e-9, a lamp that was drawn"},
+    {"random_sphere", lc_expect_direct, 1e-5, "sphere to a point, Howell B-43, a lamp that was drawn"},
+    {"random_lights", lc_expect_direct, 1e-5, "closed forms of three lamps that were drawn, added"},
     {"light_behind", expect_black, 0, "a lamp seen from its back gives nothing"},
     {"light_below", expect_black, 0, "a lamp below the horizon gives nothing"},
     {"no_lights", expect_black, 0, "no light, no light"},

@@ -29,6 +29,8 @@ typedef struct lc_share {
     double false_fail, false_pass; /* probability of each, for the whole row */
     double margin;                 /* relative: what PASS has to show */
     uint64_t seed;
+    uint32_t arm; /* the estimator's stream */
+    int threads;
 } lc_share;
 
 /* Fills verdict, numbers and reason of a row whose names are there already. An error is one of ours, not a verdict. */
@@ -56,9 +58,9 @@ typedef struct lc_claim {
     double slack;         /* the margin is this multiple of the run's; 0: 1 */
     double margin;      /* relative; 0: the run's. A wider one than the run's holds: nothing is shown closer than `tolerance` */
     const char *source; /* of what is expected, in words */
-    /* About the host: no scene and no estimator, but */
-    lc_decide_fn *decide; /* this; else NULL */
-    const char *subject;  /* what it is about: shown in the scene's place */
+    /* A claim that is not about a mean is decided by */
+    lc_decide_fn *decide; /* this; else NULL. Without a scene and an estimator it is about the host: */
+    const char *subject;  /* what of it, shown in the scene's place */
 } lc_claim;
 
 typedef struct lc_claims {
@@ -78,6 +80,11 @@ typedef struct lc_check {
 } lc_check;
 
 extern const lc_check *const lc_checks[]; /* ends with NULL */
+
+/* Direct light in closed form, over a scene whose lamps the analytic check knows. */
+lc_expect_fn lc_expect_direct;
+/* The light inside a sphere of any emission and albedo. */
+lc_expect_fn lc_expect_inside;
 
 /* Appends a claim of `check` with bounces 1 to 1; NULL without memory. */
 lc_claim *lc_claims_add(lc_claims *claims, const lc_check *check, const lc_scene *scene, const lc_estimator *estimator);

@@ -25,7 +25,7 @@ static lc_status inside_view(lc_rgb *value, int *kind, const lc_scene *scene, co
     return LC_OK;
 }
 
-static lc_status expect_inside(lc_expected *out, const lc_claim *claim, const lc_scene *scene, int threads,
+lc_status lc_expect_inside(lc_expected *out, const lc_claim *claim, const lc_scene *scene, int threads,
                                lc_error *err)
 {
     const lc_scene_desc *desc = lc_scene_description(scene);
@@ -81,7 +81,7 @@ static lc_status plan_inside(const lc_check *self, lc_claims *claims, const lc_s
         lc_status status = add(&claim, claims, self, scene, estimator, k, err);
         if (status != LC_OK)
             return status;
-        claim->expect = expect_inside;
+        claim->expect = lc_expect_inside;
         claim->tolerance = 1e-9;
         claim->may_be_still = !varies && k == 1; /* the kernel is constant */
         /* Checkerboards are looked up at every bounce: only path tracers of one lobe pay for that in the quick suite. */

@@ -16,6 +16,7 @@
 #include "verify/checks/transform.h"
 
 enum { POWER = 10 }; /* emission and scale change by 2^POWER */
+static const double TINT = 0.75; /* of a mirror */
 
 /* Turns the copy of a scene into term i of the relation. */
 typedef lc_status make_fn(lc_scene_desc *desc, int i, lc_error *err);
@@ -111,6 +112,23 @@ static lc_status make_furnace_cube(lc_scene_desc *desc, int i, lc_error *err)
     return lc_transform_furnace_cube(desc, &pose, 0.45, err);
 }
 
+static lc_status make_tinted(lc_scene_desc *desc, int i, lc_error *err)
+{
+    (void)i, (void)err;
+    for (int m = 0; m < desc->material_count; ++m)
+        for (int side = 0; side < 2; ++side)
+            desc->materials[m].side[side].mirror = lc_rgb_scale(TINT, desc->materials[m].side[side].mirror);
+    return LC_OK;
+}
+
+/* Diffuse surfaces only, mirrors only, glass only: a surface that has several is each of them, by chance. */
+static lc_status make_one_lobe(lc_scene_desc *desc, int i, lc_error *err)
+{
+    (void)err;
+    lc_transform_only_lobe(desc, i == 0 ? LC_DIFFUSE : i == 1 ? LC_MIRROR : LC_GLASS);
+    return LC_OK;
+}
+
 /* A square lamp and a square receiver. */
 static lc_status make_exchanged(lc_scene_desc *desc, int i, lc_error *err)
 {
@@ -139,6 +157,8 @@ static const struct relation {
     {"quarters", make_quarters, 1, 0, 0, 0, "each rectangular lamp cut in four: the same image"},
     {"halves", make_halves, 1, 0, 0, 0, "each wall cut in two halves: the same image"},
     {"lights", make_one_light, 1, 0, 0, 0, "all lights give the sum of what each gives alone"},
+    {"tinted", make_tinted, 1, 0, 0, 1, "a mirror of 3/4 of the albedo returns exactly 3/4 of what it reflects"},
+    {"lobes", make_one_lobe, 1, 0, 0, 1, "a surface that is half a mirror has the mean of what its halves give"},
     {"unfolded", make_unfolded, 0, 1, 0, 1, "what a mirror shows stands behind it, one reflection nearer"},
     {"pane", make_pane, 0, -1, 0, 1, "a pane of glass of index 1 is invisible"},
     {"cube", make_furnace_cube, 0, 0, 0, 1, "another object in a thermal furnace changes nothing"},
@@ -181,6 +201,9 @@ static const struct row {
     {"halves", "bright_room", 0, 1, 8},
     {"lights", "five_lights", 1, 0, 8},
     {"lights", "mixed_lights", 1, 1, 8},
+    {"tinted", "mirror_wall", 2, 0, 1},
+    {"lobes", "bright_mirrors", 1, 0, 8},
+    {"lobes", "glass_blend", 1, 0, 8},
     {"unfolded", "mirror_wall", 2, 0, 4},
     {"pane", "plane_tilted", 2, 0, 8},
     {"cube", "thermal_furnace", 24, 1, 8},
@@ -234,7 +257,7 @@ static void choose_bounces(lc_claim *claim, const struct row *row, const struct 
         most = claim->estimator->max_bounces;
     claim->min_bounces = 1;
     claim->max_bounces = most;
-    if (relation->make == make_albedo || relation->make == make_unfolded)
+    if (relation->make == make_albedo || relation->make == make_unfolded || relation->make == make_tinted)
         claim->min_bounces = most;
     if (relation->make == make_pane)
         claim->min_bounces = claim->max_bounces = 1;
@@ -246,6 +269,8 @@ static double factor_of(const lc_claim *claim, const struct relation *relation)
 {
     if (relation->make == make_emission)
         return ldexp(1, -POWER);
+    if (relation->make == make_tinted) /* one mirror is met, once */
+        return 1 / TINT;
     return relation->make == make_albedo ? ldexp(1, claim->max_bounces) : 1;
 }
 
@@ -267,13 +292,15 @@ static lc_status add(const lc_check *self, lc_claims *claims, const struct row *
     claim.whole_only = relation->whole_only;
     claim.slack = row->slack;
     /* Where there is one reflection, for who knows no more: of more, a path tracer has a scene of its own. */
-    int is_apt = (row->bounces == 1) == (estimator->max_bounces == 1);
+    int is_apt = relation->sees_all || (row->bounces == 1) == (estimator->max_bounces == 1);
     if (!is_apt && row->slack > 1)
         return LC_OK;
     claim.full_only = row->full_only || !is_apt;
     claim.tolerance = 1e-9;
     claim.source = relation->source;
-    claim.term_count = relation->make == make_one_light ? lc_transform_lights(lc_scene_description(scene)) : 1;
+    claim.term_count = relation->make == make_one_light  ? lc_transform_lights(lc_scene_description(scene))
+                       : relation->make == make_one_lobe ? 3
+                                                         : 1;
     if (claim.term_count > LC_MAX_TERMS)
         return lc_fail(err, LC_FAULT, "%s: %d lights, expected at most %d", lc_scene_description(scene)->name,
                        claim.term_count, LC_MAX_TERMS);

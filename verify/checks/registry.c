@@ -16,6 +16,7 @@
     X(furnace) \
     X(equality) \
     X(metamorphic) \
+    X(convergence) \
     X(povray)
 
 #define DECLARE(id) extern const lc_check lc_check_##id;

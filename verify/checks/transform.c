@@ -149,6 +149,20 @@ void lc_transform_only_light(lc_scene_desc *desc, int index)
     desc->has_sky = desc->has_sky && light == index;
 }
 
+void lc_transform_only_lobe(lc_scene_desc *desc, int lobe)
+{
+    for (int i = 0; i < desc->material_count; ++i)
+        for (int side = 0; side < 2; ++side) {
+            lc_side *s = &desc->materials[i].side[side];
+            if (lobe != LC_DIFFUSE)
+                s->diffuse = lc_texture_constant(lc_black());
+            if (lobe != LC_MIRROR)
+                s->mirror = lc_black();
+            if (lobe != LC_GLASS)
+                s->glass = 0;
+        }
+}
+
 /* ---- mirrors, glass, furnaces, squares ----------------------------------------------------------------------------- */
 
 static lc_vec3 column(const lc_affine *a, int k) { return lc_vec(a->m[0][k], a->m[1][k], a->m[2][k]); }

@@ -34,6 +34,9 @@ lc_status lc_transform_cut(lc_scene_desc *desc, int lamps, int columns, int rows
 int lc_transform_lights(const lc_scene_desc *desc);
 void lc_transform_only_light(lc_scene_desc *desc, int index);
 
+/* All surfaces keep only this lobe: LC_DIFFUSE, LC_MIRROR or LC_GLASS. L_1 is the sum of what each alone gives. */
+void lc_transform_only_lobe(lc_scene_desc *desc, int lobe);
+
 /* The world behind the flat mirror `shape`, in its place: all other things reflected, the mirror gone, the camera as it
  * was. What was seen in the mirror is seen where it appears to be, by one reflection less. Normals keep their sides. */
 void lc_transform_unfold(lc_scene_desc *desc, int shape);

@@ -346,23 +346,34 @@ static lc_status judge_statistically(lc_row *row, lc_session *session, const lc_
     return LC_OK;
 }
 
-static lc_status judge_host(lc_row *row, const lc_session *session, const lc_claim *claim, lc_error *err)
+/* By the claim itself, with its share of the budget. */
+static lc_status judge_by_itself(lc_row *row, lc_session *session, const lc_claim *claim, uint32_t arm, lc_error *err)
 {
     const lc_verify_options *o = session->options;
-    lc_share share = {o->false_fail / session->rows, o->false_pass / session->rows, session->margin, o->seed};
+    lc_share share = {o->false_fail / session->rows, o->false_pass / session->rows, session->margin, o->seed, arm,
+                      o->threads};
+    lc_status status = claim->decide(row, claim, &share, err);
+    if (claim->scene)
+        session->paths += row->paths;
+    return status;
+}
+
+static lc_status judge_host(lc_row *row, lc_session *session, const lc_claim *claim, lc_error *err)
+{
+    const lc_verify_options *o = session->options;
     snprintf(row->check, sizeof row->check, "%s", claim->check->name);
     snprintf(row->scene, sizeof row->scene, "%s", claim->subject);
     snprintf(row->estimator, sizeof row->estimator, "host");
     snprintf(row->source, sizeof row->source, "%s", claim->source);
     snprintf(row->reproduce, sizeof row->reproduce, "%s verify --suite %s -c %s --seed %llu", o->program,
              o->suite->name, row->check, (unsigned long long)o->seed);
-    return claim->decide(row, claim, &share, err);
+    return judge_by_itself(row, session, claim, 0, err);
 }
 
 lc_status lc_judge_claim(lc_row *row, lc_session *session, const lc_claim *claim, lc_error *err)
 {
     const lc_verify_options *o = session->options;
-    if (claim->decide)
+    if (!claim->scene)
         return judge_host(row, session, claim, err);
     const lc_scene_desc *desc = lc_scene_description(claim->scene);
     snprintf(row->check, sizeof row->check, "%s", claim->check->name);
@@ -375,6 +386,8 @@ lc_status lc_judge_claim(lc_row *row, lc_session *session, const lc_claim *claim
     row->exact = claim->exact;
     row->min_bounces = claim->min_bounces;
     row->max_bounces = claim->max_bounces;
+    if (claim->decide)
+        return judge_by_itself(row, session, claim, lc_session_arm(claim->estimator), err);
     if (claim->exact)
         return judge_exact(row, session, claim, err);
     lc_estimate *field = malloc(sizeof *field * (size_t)desc->width * (size_t)desc->height);

@@ -81,7 +81,7 @@ static lc_status plan_host(lc_claims *claims, lc_error *err)
 
 static int is_selected(const lc_verify_options *o, const lc_claim *claim)
 {
-    if (claim->decide) /* whoever asks about one estimator or one scene does not ask about the host */
+    if (!claim->scene) /* whoever asks about one estimator or one scene does not ask about the host */
         return !o->estimator && !o->scene && (!o->check || strcmp(o->check, claim->check->name) == 0);
     return (!o->estimator || o->estimator == claim->estimator) &&
            (!o->check || strcmp(o->check, claim->check->name) == 0) &&
@@ -155,10 +155,11 @@ static lc_status measure_scene(const lc_claims *claims, lc_session *session, voi
 {
     for (int i = 0; i < claims->count; ++i) {
         const lc_claim *claim = &claims->items[i];
-        int known = claim->exact;
+        int known = claim->exact || claim->decide || claim->term_count;
         for (int j = 0; j < i; ++j)
             known |= claims->items[j].estimator == claim->estimator &&
-                     claims->items[j].max_bounces == claim->max_bounces && !claims->items[j].exact;
+                     claims->items[j].max_bounces == claim->max_bounces && !claims->items[j].exact && !claims->items[j].decide &&
+                     !claims->items[j].term_count;
         if (known)
             continue;
         const lc_film *film;

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  *
- * Bugs that a scene of usual size, brightness and orientation hides: absolute thresholds, and axes of the world. Close to
- * right where they were tried, they show when the scene is changed and the estimator has to agree with itself.
+ * Bugs that a scene of usual size, brightness and orientation hides: absolute thresholds, axes of the world. Close to right
+ * where they were tried, they show when the scene is changed and the estimator has to agree with itself; or with more
+ * samples, which do not help a generator that repeats. And a trap of the lecture: its method 1 sees lights from behind.
  */
 #include "lightcheck.h"
 
@@ -13,7 +14,9 @@ enum {
     WORLD_FRAME = 16,
     ENDS_DIM = 32,
     UNDIVIDED = 64,
-    WORLD_UP = 128
+    WORLD_UP = 128,
+    RESEEDED = 256,
+    TWO_SIDED = 512
 };
 
 #define BRIGHTEST 200.0 /* no sample of the suite's scenes is brighter */
@@ -72,6 +75,17 @@ static lc_vec3 reflect_along_axis(lc_vec3 wo, lc_vec3 n)
     return wi;
 }
 
+/* A generator of its own, seeded by the direction to the viewer: it is nearly the same for all samples of a pixel. */
+static void reseeded(lc_vec3 wo, double *u, double *v)
+{
+    unsigned long seed = (unsigned long)(16 * (wo.x + 2)) * 73856093u ^ (unsigned long)(16 * (wo.y + 2)) * 19349663u ^
+                         (unsigned long)(16 * (wo.z + 2)) * 83492791u;
+    seed = (seed * 1103515245u + 12345u) & 0xffffffffu;
+    *u = (double)(seed >> 8) * 0x1p-24;
+    seed = (seed * 1103515245u + 12345u) & 0xffffffffu;
+    *v = (double)(seed >> 8) * 0x1p-24;
+}
+
 /* What the throughput is multiplied by; black ends the path. */
 static lc_rgb scatter(const lc_scene *scene, const lc_hit *hit, lc_sampler *sampler, int mirrors, unsigned bugs,
                       lc_vec3 *wi)
@@ -87,6 +101,8 @@ static lc_rgb scatter(const lc_scene *scene, const lc_hit *hit, lc_sampler *samp
     }
     lc_vec3 n = lc_facing(hit->n, hit->wo);
     double u = lc_next(sampler), v = lc_next(sampler);
+    if (bugs & RESEEDED)
+        reseeded(hit->wo, &u, &v);
     *wi = bugs & WORLD_FRAME ? world_frame_hemisphere(n, u, v) : lc_uniform_hemisphere(n, u, v);
     return lc_rgb_scale(2 * LC_PI * lc_dot(n, *wi) / (1 - q), lc_bsdf_eval(scene, hit, *wi));
 }
@@ -97,6 +113,8 @@ static lc_rgb walk(const lc_scene *scene, const lc_hit *first, const lc_options 
     lc_rgb sum = lc_black(), throughput = lc_color(1, 1, 1);
     lc_hit hit = *first;
     for (int k = 0;; ++k) {
+        if (bugs & TWO_SIDED)
+            hit.n = lc_facing(hit.n, hit.wo);
         if (k >= options->min_bounces)
             sum = lc_rgb_add(sum, lc_rgb_mul(throughput, lc_emission(scene, &hit)));
         if (k == options->max_bounces || !hit.valid)
@@ -140,6 +158,10 @@ MUTANT(light_softened, by_light, 0, SOFT, "1 / (d^2 + 0.0001) against division b
 MUTANT(three_point_softened, by_light, 1, SOFT, "1 / (d^2 + 0.0001) against division by zero", "three_point",
        LC_DIFFUSE, LC_AREA, 1);
 MUTANT(hemisphere_world_frame, walk, 0, WORLD_FRAME, "a frame from the world's up, right for floors only",
+       "hemisphere_direct", LC_DIFFUSE, LC_AREA | LC_SKY, 1);
+MUTANT(hemisphere_reseeded, walk, 0, RESEEDED, "a generator of its own, seeded for each pixel", "hemisphere_direct",
+       LC_DIFFUSE, LC_AREA | LC_SKY, 1);
+MUTANT(hemisphere_two_sided, walk, 0, TWO_SIDED, "lights shine from both sides, as in method 1 of the lecture",
        "hemisphere_direct", LC_DIFFUSE, LC_AREA | LC_SKY, 1);
 MUTANT(path_clamped, walk, 0, CLAMP, "fireflies are clamped to 200", "path", LC_DIFFUSE, LC_AREA | LC_SKY,
        LC_UNBOUNDED);

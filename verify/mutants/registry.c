@@ -60,6 +60,8 @@
     X(light_softened, "light_direct") \
     X(three_point_softened, "three_point") \
     X(hemisphere_world_frame, "hemisphere_direct") \
+    X(hemisphere_reseeded, "hemisphere_direct") \
+    X(hemisphere_two_sided, "hemisphere_direct") \
     X(path_clamped, "path") \
     X(path_ends_when_dim, "path") \
     X(path_roulette_undivided, "path") \

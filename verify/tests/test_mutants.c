@@ -70,6 +70,8 @@ static const struct row {
     {"light_softened", "metamorphic", "five_lights"},
     {"three_point_softened", "metamorphic", "five_lights"},
     {"hemisphere_world_frame", "metamorphic", "five_lights"},
+    {"hemisphere_reseeded", "convergence", "two_patches"},
+    {"hemisphere_two_sided", "analytic", "light_behind"},
     {"path_clamped", "metamorphic", "bright_mirrors"},
     {"path_ends_when_dim", "metamorphic", "bright_mirrors"},
     {"path_roulette_undivided", "metamorphic", "bright_mirrors"},

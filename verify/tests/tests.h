@@ -40,5 +40,6 @@ Suite *lc_suite_verify(void);
 Suite *lc_suite_mutants(void);
 Suite *lc_suite_metamorphic(void);
 Suite *lc_suite_family(void);
+Suite *lc_suite_convergence(void);
 
 #endif
