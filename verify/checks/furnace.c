@@ -76,7 +76,7 @@ static lc_status plan_inside(const lc_check *self, lc_claims *claims, const lc_s
     int is_drawn = lc_family_find(lc_scene_description(scene)->name) != NULL;
     for (int k = 1; k <= 8 && k <= estimator->max_bounces; ++k) {
         lc_claim *claim;
-        if (is_drawn && k != (estimator->max_bounces > 1 ? 3 : 1) && k != 6)
+        if (is_drawn && k != (estimator->max_bounces > 1 ? 3 : 1) && (k != 6 || estimator->lobes != LC_DIFFUSE))
             continue;
         lc_status status = add(&claim, claims, self, scene, estimator, k, err);
         if (status != LC_OK)
