@@ -44,6 +44,32 @@ lc_status lc_expect_direct(lc_expected *out, const lc_claim *claim, const lc_sce
     return lc_expect_view(out, direct_view, NULL, scene, claim->tolerance, threads, err);
 }
 
+/* Light that arrives by way of one other surface. */
+static lc_status second_view(lc_rgb *value, int *kind, const lc_scene *scene, const lc_hit *hit, void *user,
+                             lc_error *err)
+{
+    (void)err;
+    *kind = hit->valid ? 2 * hit->shape + (lc_dot(hit->n, hit->wo) > 0) : -1;
+    if (value && hit->valid)
+        *value = lc_rgb_scale(LC_INV_PI, lc_rgb_mul(lc_material_at(scene, hit).diffuse,
+                                                    lc_second_irradiance(user, hit->shape, hit->p, hit->n)));
+    else if (value)
+        *value = lc_black();
+    return LC_OK;
+}
+
+static lc_status expect_second(lc_expected *out, const lc_claim *claim, const lc_scene *scene, int threads,
+                               lc_error *err)
+{
+    lc_second second;
+    lc_status status = lc_second_prepare(&second, lc_scene_description(scene), err);
+    if (status != LC_OK)
+        return status;
+    status = lc_expect_view(out, second_view, &second, scene, claim->tolerance, threads, err);
+    lc_second_release(&second);
+    return status;
+}
+
 /* The arrays are zero already. */
 static lc_status expect_black(lc_expected *out, const lc_claim *claim, const lc_scene *scene, int threads,
                               lc_error *err)
@@ -85,6 +111,7 @@ static const struct {
     {"random_disk", lc_expect_direct, 1e-5, "ellipse to a point, quadrature to 1e-9, a lamp that was drawn"},
     {"random_sphere", lc_expect_direct, 1e-5, "sphere to a point, Howell B-43, a lamp that was drawn"},
     {"random_lights", lc_expect_direct, 1e-5, "closed forms of three lamps that were drawn, added"},
+    {"two_surfaces", expect_second, 1e-5, "via two surfaces: quadrature over the wall, polygon formula at each node"},
     {"light_behind", expect_black, 0, "a lamp seen from its back gives nothing"},
     {"light_below", expect_black, 0, "a lamp below the horizon gives nothing"},
     {"no_lights", expect_black, 0, "no light, no light"},
@@ -99,7 +126,8 @@ static lc_status plan(const lc_check *self, lc_claims *claims, const lc_scene *s
             continue;
         /* At one bounce a path tracer is its own direct estimator: one scene tells as much. */
         int is_drawn = lc_family_find(name) != NULL, is_deep = estimator->max_bounces > 1;
-        if (is_drawn && is_deep)
+        int is_second = rows[i].expect == expect_second;
+        if ((is_drawn && is_deep) || (is_second && !is_deep))
             continue;
         lc_claim *claim = lc_claims_add(claims, self, scene, estimator);
         if (!claim)
@@ -109,7 +137,11 @@ static lc_status plan(const lc_check *self, lc_claims *claims, const lc_scene *s
         claim->exact = rows[i].expect == expect_black;
         claim->source = rows[i].source;
         claim->full_only = is_deep && !claim->exact && strcmp(name, "sky") != 0;
-        claim->slack = is_drawn ? 2 : 1; /* the fixed scenes have narrower margins */
+        if (is_second) {
+            claim->min_bounces = claim->max_bounces = 2;
+            claim->full_only = estimator->lobes != LC_DIFFUSE;
+        }
+        claim->slack = is_drawn || is_second ? 2 : 1; /* the fixed scenes have narrower margins */
         claim->may_be_still = lc_scene_emitters(scene) == LC_DIRECTIONAL;
     }
     return LC_OK;

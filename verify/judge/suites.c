@@ -50,6 +50,7 @@ const char *const lc_suite_scenes[] = {
     "bright_mirrors",
     "mirror_wall",
     "two_patches",
+    "two_surfaces",
     "random_rectangle",
     "random_disk",
     "random_sphere",

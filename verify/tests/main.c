@@ -13,6 +13,7 @@ static Suite *(*const suites[])(void) = {
     lc_suite_cli,      lc_suite_report,         lc_suite_estimators,    lc_suite_judge_mutants,
     lc_suite_povray,   lc_suite_verify,         lc_suite_mutants,
     lc_suite_metamorphic, lc_suite_family,       lc_suite_convergence,
+    lc_suite_lecture,
 };
 
 int main(void)

@@ -223,6 +223,62 @@ START_TEST(what_a_path_that_ends_at_a_light_costs)
 }
 END_TEST
 
+/* ---- two surfaces ------------------------------------------------------------------------------------------------------ */
+
+typedef struct patch {
+    const lc_scene_desc *desc;
+    lc_vec3 p, n, q, u, v, m; /* receiver; centre, half sides and normal of the wall */
+    double s;
+} patch;
+
+static double along_v(double t, void *user)
+{
+    const patch *c = user;
+    lc_vec3 q = lc_add(c->q, lc_add(lc_scale(c->s, c->u), lc_scale(t, c->v))), to = lc_sub(q, c->p);
+    double d2 = lc_dot(to, to);
+    lc_rgb e;
+    lc_error err = {""};
+    ck_assert_int_eq(lc_direct_irradiance(&e, c->desc, q, c->m, &err), LC_OK);
+    return e.g * fmax(lc_dot(c->n, to), 0) * fmax(-lc_dot(c->m, to), 0) / (d2 * d2);
+}
+
+static double along_u(double s, void *user)
+{
+    patch *c = user;
+    double sum;
+    lc_error err = {""};
+    c->s = s;
+    ck_assert_int_eq(lc_quadrature(&sum, along_v, c, -1, 1, 0, 1e-8, &err), LC_OK);
+    return sum;
+}
+
+/* The product rule against adaptive quadrature, near the wall and far from it. */
+START_TEST(one_particle_via_two_surfaces)
+{
+    lc_scene_desc desc = read_scene("two_surfaces");
+    lc_error err = {""};
+    lc_second second;
+    ck_assert_msg(lc_second_prepare(&second, &desc, &err) == LC_OK, "%s", err.text);
+    const lc_affine *wall = &desc.shapes[1].to_world, *floor = &desc.shapes[0].to_world;
+    for (int i = 0; i < 5; ++i) {
+        patch c = {.desc = &desc, .n = lc_vec(0, 0, 1), .m = lc_vec(1, 0, 0)};
+        c.p = lc_affine_point(floor, lc_vec(-1 + 0.5 * i, 0.4 - 0.3 * i, 0));
+        c.q = lc_affine_point(wall, lc_vec(0, 0, 0));
+        c.u = lc_affine_vector(wall, lc_vec(1, 0, 0));
+        c.v = lc_affine_vector(wall, lc_vec(0, 1, 0));
+        double sum, area = lc_length(lc_cross(c.u, c.v));
+        ck_assert_int_eq(lc_quadrature(&sum, along_u, &c, -1, 1, 0, 1e-7, &err), LC_OK);
+        double rho = desc.materials[desc.shapes[1].material].side[0].diffuse.color[0].g;
+        double should = sum * area * rho / LC_PI, is = lc_second_irradiance(&second, 0, c.p, c.n).g;
+        ck_assert_msg(fabs(is / should - 1) < 1e-6, "point %d: %.9g, by adaptive quadrature %.9g", i, is, should);
+    }
+    lc_second_release(&second);
+    desc.shapes[1].kind = LC_DISK;
+    ck_assert_int_eq(lc_second_prepare(&second, &desc, &err), LC_BAD_INPUT);
+    lc_scene_desc_release(&desc);
+}
+END_TEST
+
 Suite *lc_suite_convergence(void)
 {
     Suite *suite = suite_create("convergence");
@@ -233,6 +289,7 @@ Suite *lc_suite_convergence(void)
     tcase_add_test(c, light_sampling_is_better_by_so_much);
     tcase_add_test(c, what_a_two_sided_light_costs);
     tcase_add_test(c, what_a_path_that_ends_at_a_light_costs);
+    tcase_add_test(c, one_particle_via_two_surfaces);
     suite_add_tcase(suite, c);
     return suite;
 }

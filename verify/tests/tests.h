@@ -40,6 +40,7 @@ Suite *lc_suite_verify(void);
 Suite *lc_suite_mutants(void);
 Suite *lc_suite_metamorphic(void);
 Suite *lc_suite_family(void);
+Suite *lc_suite_lecture(void);
 Suite *lc_suite_convergence(void);
 
 #endif
