@@ -70,6 +70,27 @@ static lc_status expect_second(lc_expected *out, const lc_claim *claim, const lc
     return status;
 }
 
+/* Beside a wall at x = 0 of height 1 and any length, under the sky. */
+static lc_status wall_view(lc_rgb *value, int *kind, const lc_scene *scene, const lc_hit *hit, void *user,
+                           lc_error *err)
+{
+    const lc_scene_desc *desc = lc_scene_description(scene);
+    (void)user;
+    if (!hit->valid || hit->shape != 0)
+        return lc_fail(err, LC_FAULT, "%s: a camera ray misses the floor", desc->name);
+    *kind = 0;
+    if (value) {
+        double free = 1 - lc_wall_factor(atan2(1, hit->p.x));
+        *value = lc_rgb_scale(free, lc_rgb_mul(lc_material_at(scene, hit).diffuse, desc->sky));
+    }
+    return LC_OK;
+}
+
+static lc_status expect_wall(lc_expected *out, const lc_claim *claim, const lc_scene *scene, int threads, lc_error *err)
+{
+    return lc_expect_view(out, wall_view, NULL, scene, claim->tolerance, threads, err);
+}
+
 /* The arrays are zero already. */
 static lc_status expect_black(lc_expected *out, const lc_claim *claim, const lc_scene *scene, int threads,
                               lc_error *err)
@@ -112,6 +133,7 @@ static const struct {
     {"random_sphere", lc_expect_direct, 1e-5, "sphere to a point, Howell B-43, a lamp that was drawn"},
     {"random_lights", lc_expect_direct, 1e-5, "closed forms of three lamps that were drawn, added"},
     {"two_surfaces", expect_second, 1e-5, "via two surfaces: quadrature over the wall, polygon formula at each node"},
+    {"sky_wall", expect_wall, 1e-5, "E = pi L (1 + cos b) / 2 beside an infinite wall of elevation b"},
     {"light_behind", expect_black, 0, "a lamp seen from its back gives nothing"},
     {"light_below", expect_black, 0, "a lamp below the horizon gives nothing"},
     {"no_lights", expect_black, 0, "no light, no light"},

@@ -48,7 +48,7 @@ static lc_status plan(const lc_check *self, lc_claims *claims, const lc_scene *s
     /* Black by both, or without variance: analytic and furnace hold these exactly. Where emitters touch, sampling them by area has infinite
      * variance. */
     static const char *const never[] = {"light_behind", "light_below", "furnace_sphere", "thermal_furnace",
-                                        "mirror_corridor"};
+                                        "mirror_corridor", "parallel_plates", "enclosure"};
     for (size_t i = 0; i < sizeof never / sizeof never[0]; ++i)
         if (strcmp(desc->name, never[i]) == 0)
             return LC_OK;
