@@ -249,6 +249,15 @@ enum { LC_TILE = 8 };
 
 /* ---- render ---------------------------------------------------------------------------------------------------- */
 
+/* What the same estimator gives over another scene, from the same random numbers. */
+typedef struct lc_term {
+    const lc_scene *scene;
+    double factor; /* of it */
+    int shift;     /* its bounces are this many fewer */
+} lc_term;
+
+enum { LC_MAX_TERMS = 8 };
+
 typedef struct lc_render_options {
     int min_bounces, max_bounces;
     uint64_t seed;
@@ -256,6 +265,8 @@ typedef struct lc_render_options {
     uint64_t first, count;                     /* sample indices */
     int threads;                               /* 0: one a core */
     int shard, shards;                         /* shards = 0 or 1: everything */
+    const lc_term *minus;                      /* each sample less the sum of these: such a film may be negative */
+    int minus_count;                           /* at most LC_MAX_TERMS; 0: nothing is taken off */
     void (*progress)(void *user, double done); /* may be NULL; 0..1, ends with 1; from one thread */
     void *user;
 } lc_render_options;

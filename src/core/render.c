@@ -15,7 +15,7 @@ typedef struct job {
     const lc_scene *scene;
     const lc_estimator *estimator;
     const lc_render_options *options;
-    lc_camera_frame frame;
+    lc_camera_frame frame, minus_frame[LC_MAX_TERMS];
     int tiles_x, tiles;
     pthread_mutex_t lock; /* of all that follows */
     int next_tile, done;
@@ -65,20 +65,46 @@ static void note_bad(bad_samples *bad, lc_rgb c, uint32_t pixel, uint64_t sample
     bad->value[2] = c.b;
 }
 
+/* The packets that hold sample `s`: packet 0 of the scene, packet 1 + t of term t. */
+static void look_everywhere(packet *packets, const job *j, uint32_t pixel, int x, int y, uint64_t s)
+{
+    const lc_render_options *o = j->options;
+    look(&packets[0], j->scene, &j->frame, o, pixel, x, y, s, NULL);
+    for (int t = 0; t < o->minus_count; ++t)
+        look(&packets[1 + t], o->minus[t].scene, &j->minus_frame[t], o, pixel, x, y, s, NULL);
+}
+
+/* A sample less the terms, each from the same random numbers; returns 0, with the value that is bad, where one is. */
+static int sample_of(lc_rgb *out, packet *packets, const job *j, uint64_t s)
+{
+    const lc_render_options *o = j->options;
+    int i = (int)(s % LC_PACKET);
+    for (int t = -1; t < o->minus_count; ++t) {
+        const lc_term self = {j->scene, 1, 0}, *term = t < 0 ? &self : &o->minus[t];
+        packet *p = &packets[1 + t];
+        lc_options bounces = {o->min_bounces - term->shift, o->max_bounces - term->shift};
+        lc_rgb c = j->estimator->radiance(term->scene, &p->rays[i], &p->hits[i], &bounces, &p->samplers[i]);
+        if (is_bad(c)) {
+            *out = c;
+            return 0;
+        }
+        *out = t < 0 ? c : lc_rgb_add(*out, lc_rgb_scale(-term->factor, c));
+    }
+    return 1;
+}
+
 static void render_pixel(const job *j, int x, int y, bad_samples *bad)
 {
     const lc_render_options *o = j->options;
     uint32_t pixel = (uint32_t)(y * j->film->width + x);
-    lc_options bounces = {o->min_bounces, o->max_bounces};
     double block[LC_BLOCK][3];
-    packet p;
+    packet packets[1 + LC_MAX_TERMS];
     int filled = 0;
     for (uint64_t s = o->first; s < o->first + o->count; ++s) {
-        int i = (int)(s % LC_PACKET);
-        if (i == 0 || s == o->first)
-            look(&p, j->scene, &j->frame, o, pixel, x, y, s, NULL);
-        lc_rgb c = j->estimator->radiance(j->scene, &p.rays[i], &p.hits[i], &bounces, &p.samplers[i]);
-        if (is_bad(c)) {
+        lc_rgb c;
+        if (s % LC_PACKET == 0 || s == o->first)
+            look_everywhere(packets, j, pixel, x, y, s);
+        if (!sample_of(&c, packets, j, s)) {
             note_bad(bad, c, pixel, s);
             c = lc_black(); /* the film stays readable; the count makes it fail */
         }
@@ -166,6 +192,14 @@ static lc_status check_options(const lc_film *film, const lc_scene *scene, const
     if (o->shards > 1 && (o->shard < 0 || o->shard >= o->shards))
         return lc_fail(err, LC_BAD_INPUT, "%s: shard %d of %d, expected 0 to %d", scene_name, o->shard, o->shards,
                        o->shards - 1);
+    if (o->minus_count < 0 || o->minus_count > LC_MAX_TERMS)
+        return lc_fail(err, LC_BAD_INPUT, "%s: less %d scenes, expected at most %d", scene_name, o->minus_count,
+                       LC_MAX_TERMS);
+    for (int i = 0; i < o->minus_count; ++i)
+        if (o->minus[i].shift > o->min_bounces || o->max_bounces - o->minus[i].shift > estimator->max_bounces)
+            return lc_fail(err, LC_BAD_INPUT, "%s: bounces %d to %d over another scene, expected 0 to %d", scene_name,
+                           o->min_bounces - o->minus[i].shift, o->max_bounces - o->minus[i].shift,
+                           estimator->max_bounces);
     if (film->count == 0)
         return LC_OK;
     if (film->seed != o->seed || film->arm != o->arm || film->first + film->count != o->first ||
@@ -196,6 +230,10 @@ lc_status lc_render(lc_film *film, const lc_scene *scene, const lc_estimator *es
              .next_tile = o.shard};
     lc_camera_prepare(&j.frame, &scene->desc.camera, film->width, film->height);
     j.frame.moves = scene->moves;
+    for (int i = 0; i < o.minus_count; ++i) {
+        lc_camera_prepare(&j.minus_frame[i], &o.minus[i].scene->desc.camera, film->width, film->height);
+        j.minus_frame[i].moves = o.minus[i].scene->moves;
+    }
     j.tiles = j.tiles_x * ((film->height + LC_TILE - 1) / LC_TILE);
 
     long cores = o.threads > 0 ? o.threads : sysconf(_SC_NPROCESSORS_ONLN);

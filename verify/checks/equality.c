@@ -7,6 +7,7 @@
 
 #include "estimators/registry.h"
 #include "verify/checks/checks.h"
+#include "verify/checks/family.h"
 
 /* The hubs, first choice first: of direct light, and of all bounces. */
 static const char *const direct_hubs[] = {"light_direct"};
@@ -47,10 +48,13 @@ static lc_status plan(const lc_check *self, lc_claims *claims, const lc_scene *s
     /* Black by both, or without variance: analytic and furnace hold these exactly; effects holds each estimator. Where emitters touch, sampling them by area has infinite
      * variance. */
     static const char *const never[] = {"light_behind", "light_below", "furnace_sphere", "thermal_furnace",
-                                        "mirror_corridor", "glossy_sky", "glossy_lamp", "lens_edge", "motion_flight", "motion_shadow", "motion_lamp"};
+                                        "mirror_corridor", "glossy_sky", "glossy_lamp", "lens_edge", "motion_flight",
+                                        "motion_shadow", "motion_lamp", "parallel_plates", "enclosure"};
     for (size_t i = 0; i < sizeof never / sizeof never[0]; ++i)
         if (strcmp(desc->name, never[i]) == 0)
             return LC_OK;
+    if (lc_family_find(desc->name)) /* each has a closed form */
+        return LC_OK;
     if (emitters == 0 || (estimator->lobes & lc_scene_lobes(scene)) == 0 || estimator->max_bounces < 1)
         return LC_OK;
     /* The quick suite: direct light where there is no closed form, or several lights; path tracers where lamps are so large that uniform directions

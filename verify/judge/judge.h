@@ -58,6 +58,8 @@ void lc_verify_options_init(lc_verify_options *options);
 
 /* Fills the report. LC_OK even when rows failed: lc_report_status() tells. Loads scenes through `load`, which owns nothing of them. */
 typedef lc_status lc_load_scene_fn(lc_scene **out, const char *name, lc_error *err);
+/* A scene of the suites: through `load`, or where the name is a family's, the one of this seed. */
+lc_status lc_suite_scene(lc_scene **out, const char *name, uint64_t seed, lc_load_scene_fn *load, lc_error *err);
 lc_status lc_verify(lc_report *report, const lc_verify_options *options, lc_load_scene_fn *load, lc_error *err);
 
 /* Measures c of every cell of all suites (of one estimator, of one scene, where not NULL), and calls `line` with each as a row of

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "estimators/registry.h"
+#include "verify/checks/family.h"
 #include "verify/judge/judge_c.h"
 
 void lc_verify_options_init(lc_verify_options *options)
@@ -17,6 +18,20 @@ void lc_verify_options_init(lc_verify_options *options)
     options->false_fail = options->false_pass = 1e-6;
     options->seed = 1;
     options->program = "build/lightcheck";
+}
+
+lc_status lc_suite_scene(lc_scene **out, const char *name, uint64_t seed, lc_load_scene_fn *load, lc_error *err)
+{
+    const lc_family *family = lc_family_find(name);
+    lc_scene_desc desc;
+    if (!family)
+        return load(out, name, err);
+    lc_status status = lc_family_describe(&desc, family, seed, err);
+    if (status != LC_OK)
+        return status;
+    status = lc_scene_build(out, &desc, err);
+    lc_scene_desc_release(&desc);
+    return status;
 }
 
 static lc_status plan_pair(lc_claims *claims, int *not_applicable, const lc_scene *scene, const lc_estimator *estimator,
@@ -66,7 +81,7 @@ static lc_status plan_host(lc_claims *claims, lc_error *err)
 
 static int is_selected(const lc_verify_options *o, const lc_claim *claim)
 {
-    if (claim->decide) /* whoever asks about one estimator or one scene does not ask about the host */
+    if (!claim->scene) /* whoever asks about one estimator or one scene does not ask about the host */
         return !o->estimator && !o->scene && (!o->check || strcmp(o->check, claim->check->name) == 0);
     return (!o->estimator || o->estimator == claim->estimator) &&
            (!o->check || strcmp(o->check, claim->check->name) == 0) &&
@@ -105,7 +120,7 @@ lc_status lc_verify(lc_report *report, const lc_verify_options *options, lc_load
 {
     lc_scene **scenes = NULL;
     int scene_count = 0, suite_scenes = 0;
-    lc_claims claims = {NULL, 0};
+    lc_claims claims = {.count = 0};
     lc_session session = {.options = options, .margin = options->margin > 0 ? options->margin : options->suite->margin};
     lc_status status = LC_OK;
     memset(report, 0, sizeof *report);
@@ -118,7 +133,7 @@ lc_status lc_verify(lc_report *report, const lc_verify_options *options, lc_load
     scenes = calloc((size_t)suite_scenes, sizeof *scenes);
     status = scenes ? plan_host(&claims, err) : lc_fail(err, LC_FAULT, "out of memory for the scenes");
     for (int i = 0; i < suite_scenes && status == LC_OK; ++i) {
-        status = load(&scenes[scene_count], lc_suite_scenes[i], err);
+        status = lc_suite_scene(&scenes[scene_count], lc_suite_scenes[i], options->seed, load, err);
         if (status == LC_OK)
             status = plan_scene(&claims, &report->not_applicable, options, scenes[scene_count++], err);
     }
@@ -143,10 +158,12 @@ static lc_status measure_scene(const lc_claims *claims, lc_session *session, voi
 {
     for (int i = 0; i < claims->count; ++i) {
         const lc_claim *claim = &claims->items[i];
-        int known = claim->exact || (session->options->estimator && session->options->estimator != claim->estimator);
+        int known = claim->exact || claim->decide || claim->term_count ||
+                    (session->options->estimator && session->options->estimator != claim->estimator);
         for (int j = 0; j < i; ++j)
             known |= claims->items[j].estimator == claim->estimator &&
-                     claims->items[j].max_bounces == claim->max_bounces && !claims->items[j].exact;
+                     claims->items[j].max_bounces == claim->max_bounces && !claims->items[j].exact && !claims->items[j].decide &&
+                     !claims->items[j].term_count;
         if (known)
             continue;
         const lc_film *film;
@@ -172,8 +189,10 @@ lc_status lc_measure_cells(lc_load_scene_fn *load, const lc_estimator *estimator
     for (int i = 0; lc_suite_scenes[i] && status == LC_OK; ++i) {
         if (only && strcmp(only, lc_suite_scenes[i]) != 0)
             continue;
+        if (lc_family_find(lc_suite_scenes[i]))
+            continue; /* each of its scenes has another noise: a pilot measures it */
         lc_session session = {.options = &options};
-        lc_claims claims = {NULL, 0};
+        lc_claims claims = {.count = 0};
         lc_scene *scene = NULL;
         int not_applicable = 0;
         status = load(&scene, lc_suite_scenes[i], err);

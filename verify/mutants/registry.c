@@ -86,7 +86,19 @@
     X(direct_mis_hit_weight_one, "direct_mis") \
     X(direct_mis_area_density, "direct_mis") \
     X(solid_area_points, "light_solid_angle") \
-    X(solid_jacobian_again, "light_solid_angle")
+    X(solid_jacobian_again, "light_solid_angle") \
+    X(light_clamped, "light_direct") \
+    X(light_ignores_dim, "light_direct") \
+    X(light_ignores_near, "light_direct") \
+    X(light_softened, "light_direct") \
+    X(three_point_softened, "three_point") \
+    X(hemisphere_world_frame, "hemisphere_direct") \
+    X(hemisphere_reseeded, "hemisphere_direct") \
+    X(hemisphere_two_sided, "hemisphere_direct") \
+    X(path_clamped, "path") \
+    X(path_ends_when_dim, "path") \
+    X(path_roulette_undivided, "path") \
+    X(mirror_world_up, "mirror")
 
 #define DECLARE(id, of) extern const lc_estimator lc_estimator_##id;
 #define MEMBER(id, of) {&lc_estimator_##id, of},

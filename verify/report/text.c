@@ -9,7 +9,7 @@
 
 void lc_report_text_header(FILE *out)
 {
-    fprintf(out, "%-10s %-18s %-20s %-5s %-9s %10s  %-22s %8s %9s\n", "check", "scene", "estimator", "k", "verdict",
+    fprintf(out, "%-11s %-24s %-20s %-5s %-9s %10s  %-22s %8s %9s\n", "check", "scene", "estimator", "k", "verdict",
             "estimate", "interval", "margin", "paths");
 }
 
@@ -41,7 +41,7 @@ void lc_report_text_row(FILE *out, const lc_row *row)
             snprintf(interval, sizeof interval, "(none yet)");
         snprintf(margin, sizeof margin, "%.2f%%", 100 * row->margin);
     }
-    fprintf(out, "%-10s %-18s %-20s %-5s %-9s %10s  %-22s %8s %9s", row->check, row->scene, row->estimator, bounces,
+    fprintf(out, "%-11s %-24s %-20s %-5s %-9s %10s  %-22s %8s %9s", row->check, row->scene, row->estimator, bounces,
             lc_row_verdict_name(row->verdict), estimate, interval, margin, paths);
 }
 

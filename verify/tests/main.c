@@ -12,7 +12,8 @@ static Suite *(*const suites[])(void) = {
     lc_suite_surface,  lc_suite_render,         lc_suite_bsdf,          lc_suite_energy,
     lc_suite_cli,      lc_suite_report,         lc_suite_estimators,    lc_suite_judge_mutants,
     lc_suite_povray,   lc_suite_verify,         lc_suite_mutants,       lc_suite_sensitivity,
-    lc_suite_effects,  lc_suite_motion,         lc_suite_nee,
+    lc_suite_effects,  lc_suite_motion,         lc_suite_nee,           lc_suite_metamorphic,
+    lc_suite_family,   lc_suite_convergence,    lc_suite_lecture,
 };
 
 int main(void)

@@ -9,7 +9,7 @@
 #include "verify/stats/stats.h"
 #include "verify/tests/tests.h"
 
-static const lc_share share = {1e-8, 1e-8, 0.01, 1};
+static const lc_share share = {1e-8, 1e-8, 0.01, 1, 0, 0};
 
 static int material_of(const char *name)
 {

@@ -97,6 +97,18 @@ static const struct row {
     {"direct_mis_area_density", "analytic", "mixed_lights"},
     {"solid_area_points", "analytic", "plane_sphere"},
     {"solid_jacobian_again", "analytic", "plane_rectangle"},
+    {"light_clamped", "metamorphic", "five_lights"},
+    {"light_ignores_dim", "metamorphic", "five_lights"},
+    {"light_ignores_near", "metamorphic", "five_lights"},
+    {"light_softened", "metamorphic", "five_lights"},
+    {"three_point_softened", "metamorphic", "five_lights"},
+    {"hemisphere_world_frame", "metamorphic", "five_lights"},
+    {"hemisphere_reseeded", "convergence", "two_patches"},
+    {"hemisphere_two_sided", "analytic", "light_behind"},
+    {"path_clamped", "metamorphic", "bright_mirrors"},
+    {"path_ends_when_dim", "metamorphic", "bright_mirrors"},
+    {"path_roulette_undivided", "metamorphic", "bright_mirrors"},
+    {"mirror_world_up", "metamorphic", "bright_mirrors"},
 };
 enum { ROWS = sizeof rows / sizeof rows[0] };
 

@@ -518,7 +518,7 @@ START_TEST(pixels_beyond_the_band_are_left_out)
 {
     char path[LC_PATH_SIZE];
     lc_scene *scene;
-    lc_claims claims = {NULL, 0};
+    lc_claims claims = {.count = 0};
     lc_pov_image image;
     lc_estimator copy = *find_estimator("light_direct");
     const lc_check *const *check = lc_checks;

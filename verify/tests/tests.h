@@ -42,5 +42,9 @@ Suite *lc_suite_verify(void);
 Suite *lc_suite_mutants(void);
 Suite *lc_suite_sensitivity(void);
 Suite *lc_suite_nee(void);
+Suite *lc_suite_metamorphic(void);
+Suite *lc_suite_family(void);
+Suite *lc_suite_lecture(void);
+Suite *lc_suite_convergence(void);
 
 #endif
