@@ -27,15 +27,18 @@ void lc_transform_albedo(lc_scene_desc *desc, double factor)
             lc_side *s = &desc->materials[i].side[side];
             scale_texture(&s->diffuse, factor);
             s->mirror = lc_rgb_scale(factor, s->mirror);
+            s->glossy = lc_rgb_scale(factor, s->glossy);
             s->glass *= factor;
         }
 }
 
 void lc_transform_scale(lc_scene_desc *desc, double factor)
 {
-    for (int i = 0; i < desc->shape_count; ++i)
+    for (int i = 0; i < desc->shape_count; ++i) {
         for (int k = 0; k < 12; ++k)
             desc->shapes[i].to_world.m[k / 4][k % 4] *= factor;
+        desc->shapes[i].motion = lc_scale(factor, desc->shapes[i].motion);
+    }
     for (int i = 0; i < desc->point_count; ++i) {
         desc->points[i].position = lc_scale(factor, desc->points[i].position);
         desc->points[i].intensity = lc_rgb_scale(factor * factor, desc->points[i].intensity);
@@ -44,13 +47,17 @@ void lc_transform_scale(lc_scene_desc *desc, double factor)
         desc->camera.to_world.m[k][3] *= factor; /* it stays rigid */
     desc->camera.near_clip *= factor;
     desc->camera.far_clip *= factor;
+    desc->camera.aperture_radius *= factor;
+    desc->camera.focus_distance *= factor;
 }
 
 /* Shapes, points and directional lights, by any isometry. */
 static void move_things(lc_scene_desc *desc, const lc_affine *isometry)
 {
-    for (int i = 0; i < desc->shape_count; ++i)
+    for (int i = 0; i < desc->shape_count; ++i) {
         desc->shapes[i].to_world = lc_affine_multiply(isometry, &desc->shapes[i].to_world);
+        desc->shapes[i].motion = lc_affine_vector(isometry, desc->shapes[i].motion);
+    }
     for (int i = 0; i < desc->point_count; ++i)
         desc->points[i].position = lc_affine_point(isometry, desc->points[i].position);
     for (int i = 0; i < desc->directional_count; ++i)
@@ -158,6 +165,8 @@ void lc_transform_only_lobe(lc_scene_desc *desc, int lobe)
                 s->diffuse = lc_texture_constant(lc_black());
             if (lobe != LC_MIRROR)
                 s->mirror = lc_black();
+            if (lobe != LC_GLOSSY)
+                s->glossy = lc_black();
             if (lobe != LC_GLASS)
                 s->glass = 0;
         }
