@@ -25,11 +25,11 @@ lc_status lc_cli_find_estimator(const lc_estimator **out, const char *name, lc_e
             *out = *e;
             return LC_OK;
         }
-    for (const lc_mutant *m = lc_mutants; m->estimator; ++m)
-        if (strcmp(m->estimator->name, name) == 0) {
-            *out = m->estimator;
-            return LC_OK;
-        }
+    const lc_mutant *mutant = lc_mutant_find(name);
+    if (mutant) {
+        *out = mutant->estimator;
+        return LC_OK;
+    }
     char list[512] = "";
     list_names(list, sizeof list, lc_estimators);
     return lc_fail(err, LC_BAD_INPUT,

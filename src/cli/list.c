@@ -49,7 +49,8 @@ static void list_checks(item_fn *item, json_t *array)
 
 static void list_mutants(item_fn *item, json_t *array)
 {
-    for (const lc_mutant *m = lc_mutants; m->estimator; ++m)
+    const lc_mutant *m;
+    for (int i = 0; (m = lc_mutant_at(i)) != NULL; ++i)
         item(array, m->estimator->name, m->estimator->summary, m->of);
 }
 
