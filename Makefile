@@ -53,7 +53,7 @@ ALL_CFLAGS := $(WARN) $(CFLAGS) -ffp-contract=off -D_POSIX_C_SOURCE=200809L -I. 
 ALL_LIBS   := $(NEEDS_LIBS) -lm -pthread
 
 DIRS := src/core src/io estimators verify/stats verify/analytic verify/renderers verify/judge verify/checks \
-        verify/mutants verify/report
+        verify/mutants verify/diagnose verify/report
 LIB  := $(patsubst %.c,$(BUILD)/obj/%.o,$(filter-out estimators/template.c,$(wildcard $(DIRS:%=%/*.c))))
 CLI  := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard src/cli/*.c))
 TEST := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard verify/tests/*.c))

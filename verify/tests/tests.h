@@ -38,5 +38,6 @@ Suite *lc_suite_judge_mutants(void);
 Suite *lc_suite_povray(void);
 Suite *lc_suite_verify(void);
 Suite *lc_suite_mutants(void);
+Suite *lc_suite_diagnose(void);
 
 #endif
