@@ -30,6 +30,11 @@ lc_status lc_cli_find_estimator(const lc_estimator **out, const char *name, lc_e
         *out = mutant->estimator;
         return LC_OK;
     }
+    for (const lc_estimator *const *e = lc_variants; *e; ++e)
+        if (strcmp((*e)->name, name) == 0) {
+            *out = *e;
+            return LC_OK;
+        }
     char list[512] = "";
     list_names(list, sizeof list, lc_estimators);
     return lc_fail(err, LC_BAD_INPUT,

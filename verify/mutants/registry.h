@@ -36,6 +36,9 @@ const lc_mutant *lc_mutant_at(int i);
 /* NULL when there is none of that name. */
 const lc_mutant *lc_mutant_find(const char *name);
 
+/* Estimators that are right in another way than ours; ends with NULL. No check may accuse one. */
+extern const lc_estimator *const lc_variants[];
+
 typedef struct lc_mutant_category {
     const char *name, *words; /* words: "what is wrong has to do with ..." */
 } lc_mutant_category;

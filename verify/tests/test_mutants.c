@@ -192,6 +192,52 @@ START_TEST(test_origin_is_not_wrong)
 }
 END_TEST
 
+/* Right in another way than ours: where several lights, tilted ones and several bounces would show a wrong density. */
+static const struct row variant_rows[] = {
+    {"light_uneven_choice", "analytic", "five_lights"},
+    {"light_all", "analytic", "mixed_lights"},
+    {"light_two_samples", "analytic", "two_lights"},
+    {"light_antithetic", "analytic", "five_lights"},
+    {"light_single", "analytic", "two_lights"},
+    {"three_point_by_light", "analytic", "two_lights"},
+    {"three_point_all", "analytic", "five_lights"},
+    {"three_point_uneven_choice", "analytic", "two_lights"},
+    {"hemisphere_cosine", "analytic", "plane_rectangle"},
+    {"hemisphere_sphere", "analytic", "plane_rectangle"},
+    {"hemisphere_strata", "analytic", "plane_rectangle"},
+    {"hemisphere_mixture", "analytic", "plane_rectangle"},
+    {"path_by_cosine", "furnace", "furnace_checker"},
+    {"path_by_mixture", "furnace", "furnace_checker"},
+    {"path_host_samples", "furnace", "furnace_checker"},
+    {"path_analog", "furnace", "furnace_checker"},
+    {"path_never_ends", "furnace", "furnace_checker"},
+    {"path_half_survive", "furnace", "furnace_sphere"},
+    {"path_by_throughput", "furnace", "furnace_checker"},
+};
+enum { VARIANT_ROWS = sizeof variant_rows / sizeof variant_rows[0] };
+
+START_TEST(test_each_variant_has_a_row)
+{
+    int count = 0;
+    for (; lc_variants[count]; ++count)
+        ck_assert_str_eq(lc_variants[count]->name, variant_rows[count].mutant);
+    ck_assert_int_eq(count, VARIANT_ROWS);
+}
+END_TEST
+
+/* At four times the margin, as for the origins above. */
+START_TEST(test_variant_passes)
+{
+    lc_report report;
+    run(&report, lc_variants[_i], &variant_rows[_i], 0.02);
+    ck_assert_int_gt(report.count, 0);
+    for (int i = 0; i < report.count; ++i)
+        ck_assert_msg(report.rows[i].verdict == LC_ROW_PASS, "%s is accused: %s", lc_variants[_i]->name,
+                      report.rows[i].reason);
+    lc_report_release(&report);
+}
+END_TEST
+
 Suite *lc_suite_mutants(void)
 {
     Suite *suite = suite_create("mutants");
@@ -200,6 +246,8 @@ Suite *lc_suite_mutants(void)
     tcase_add_test(c, test_each_mutant_has_a_row);
     tcase_add_loop_test(c, test_mutant_is_wrong, 0, ROWS);
     tcase_add_loop_test(c, test_origin_is_not_wrong, 0, ROWS);
+    tcase_add_test(c, test_each_variant_has_a_row);
+    tcase_add_loop_test(c, test_variant_passes, 0, VARIANT_ROWS);
     suite_add_tcase(suite, c);
     return suite;
 }
