@@ -60,7 +60,7 @@ TEST := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard verify/tests/*.c))
 # The proofs of the judge: programs of their own, two of whose files have a main.
 PROOF := $(patsubst %.c,$(BUILD)/obj/%.o,$(filter-out %/calibrate.c %/power.c,$(wildcard verify/proof/*.c)))
 
-.PHONY: all check verify verify-table pictures povray-reference lint asan-check calibrate power judge-mutants needs fresh clean help
+.PHONY: all check verify verify-table pictures povray-reference lint asan-check calibrate power judge-mutants mutants needs fresh clean help
 all: $(BUILD)/lightcheck $(BUILD)/obj/estimators/template.o ## build the program
 
 $(BUILD)/lightcheck: $(CLI) $(LIB)
@@ -119,6 +119,10 @@ power: $(BUILD)/power ## samples that the judge needs, beside other programs' ru
 
 judge-mutants: ## wrong judges, each of which the tests must catch
 	@sh verify/tests/judge_mutants.sh
+
+mutants: all ## which checks kill which mutants, and that right variants pass: results/mutants.md
+	@sh verify/tests/mutants.sh $(BUILD)/lightcheck quick > $(BUILD)/mutants.md; status=$$?; \
+	    cp $(BUILD)/mutants.md results/mutants.md; exit $$status
 
 needs: ## say what is missing, if anything is
 	@:

@@ -23,7 +23,7 @@ static void print_names(FILE *out, const lc_diagnosis *d)
         return;
     }
     if (d->name_count) {
-        fprintf(out, "behaves as one of these, which the scenes do not tell apart:\n");
+        fprintf(out, "not all was decided; what was shown equal to it, while the truth was not:\n");
         for (int i = 0; i < d->name_count; ++i)
             fprintf(out, "  %s: %s\n", d->names[i]->estimator->name, d->names[i]->estimator->summary);
         return;
