@@ -53,14 +53,15 @@ ALL_CFLAGS := $(WARN) $(CFLAGS) -ffp-contract=off -D_POSIX_C_SOURCE=200809L -I. 
 ALL_LIBS   := $(NEEDS_LIBS) -lm -pthread
 
 DIRS := src/core src/io estimators verify/stats verify/analytic verify/renderers verify/judge verify/checks \
-        verify/mutants verify/report
+        verify/mutants verify/diagnose verify/report
 LIB  := $(patsubst %.c,$(BUILD)/obj/%.o,$(filter-out estimators/template.c,$(wildcard $(DIRS:%=%/*.c))))
 CLI  := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard src/cli/*.c))
 TEST := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard verify/tests/*.c))
 # The proofs of the judge: programs of their own, two of whose files have a main.
 PROOF := $(patsubst %.c,$(BUILD)/obj/%.o,$(filter-out %/calibrate.c %/power.c,$(wildcard verify/proof/*.c)))
 
-.PHONY: all check verify verify-table full-table pictures povray-reference lint asan-check calibrate power judge-mutants bench needs fresh clean help
+.PHONY: all check verify verify-table full-table pictures povray-reference lint asan-check calibrate power judge-mutants \
+        mutants bench needs fresh clean help
 all: $(BUILD)/lightcheck $(BUILD)/obj/estimators/template.o ## build the program
 
 $(BUILD)/lightcheck: $(CLI) $(LIB)
@@ -128,6 +129,10 @@ judge-mutants: ## wrong judges, each of which the tests must catch
 
 bench: all ## how fast the tracer is on this machine: paths a second of one core
 	@sh verify/tests/bench.sh $(BUILD)/lightcheck
+
+mutants: all ## which checks kill which mutants, and that right variants pass: results/mutants.md
+	@sh verify/tests/mutants.sh $(BUILD)/lightcheck quick > $(BUILD)/mutants.md; status=$$?; \
+	    cp $(BUILD)/mutants.md results/mutants.md; exit $$status
 
 needs: ## say what is missing, if anything is
 	@:

@@ -67,6 +67,9 @@ lc_status lc_verify(lc_report *report, const lc_verify_options *options, lc_load
 lc_status lc_measure_cells(lc_load_scene_fn *load, const lc_estimator *estimator, const char *scene,
                            void (*line)(void *user, const char *text), void *user, lc_error *err);
 
+/* c of a film: standard deviation of a sample over the mean, both pooled over the image, in the channel where it is largest. */
+double lc_film_noise(const lc_film *film);
+
 /* ---- two images ------------------------------------------------------------------------------------------------ */
 
 /* Decides whether two films of different streams have the same mean, within a relative margin of the second's mean. */

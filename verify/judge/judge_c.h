@@ -56,9 +56,6 @@ int lc_is_registered(const lc_estimator *estimator);
 /* The stream of an estimator in this run. One that is not in the registry never shares a stream with one that is, even under the same name. */
 uint32_t lc_session_arm(const lc_estimator *estimator);
 
-/* c of a film: standard deviation of a sample over the mean, both pooled over the image, in the channel where it is largest. */
-double lc_film_noise(const lc_film *film);
-
 /* Decides one claim and fills the row. */
 lc_status lc_judge_claim(lc_row *row, lc_session *session, const lc_claim *claim, lc_error *err);
 /* The same for a paired claim, in paired.c; room for the differences of one channel in `field`. */

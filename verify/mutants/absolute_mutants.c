@@ -5,6 +5,7 @@
  * samples, which do not help a generator that repeats. And a trap of the lecture: its method 1 sees lights from behind.
  */
 #include "lightcheck.h"
+#include "registry.h"
 
 enum {
     CLAMP = 1,
@@ -171,3 +172,56 @@ MUTANT(path_roulette_undivided, walk, 0, UNDIVIDED, "roulette by the albedo, sur
        LC_DIFFUSE, LC_AREA | LC_SKY, LC_UNBOUNDED);
 MUTANT(mirror_world_up, walk, 1, WORLD_UP, "reflection along the nearest axis of the world", "mirror",
        LC_DIFFUSE | LC_MIRROR, LC_AREA | LC_SKY, LC_UNBOUNDED);
+
+/* Each after the estimator that it was. */
+const lc_mutant lc_absolute_mutants[] = {
+    {&lc_estimator_light_clamped, "light_direct", "thresholds",
+     "Fireflies are clamped.",
+     "emission x 1024: less than 1024 times",
+     "Make every lamp brighter by one factor."},
+    {&lc_estimator_light_ignores_dim, "light_direct", "thresholds",
+     "Samples that nobody would see are left out.",
+     "emission x 1024: more than 1024 times",
+     "Make every lamp brighter by one factor."},
+    {&lc_estimator_light_ignores_near, "light_direct", "thresholds",
+     "An epsilon in metres against division by zero.",
+     "the scene at 1/1024: dark",
+     "Make the whole scene smaller."},
+    {&lc_estimator_light_softened, "light_direct", "thresholds",
+     "A constant in metres against division by zero.",
+     "the scene at 1/1024: dark",
+     "Make the whole scene smaller."},
+    {&lc_estimator_three_point_softened, "three_point", "thresholds",
+     "A constant in metres against division by zero.",
+     "the scene at 1/1024: dark",
+     "Make the whole scene smaller."},
+    {&lc_estimator_hemisphere_world_frame, "hemisphere_direct", "directions",
+     "A frame from the up axis of the world, tried on a floor.",
+     "the scene rotated: local",
+     "Rotate the scene, and the camera with it."},
+    {&lc_estimator_hemisphere_reseeded, "hemisphere_direct", "numbers",
+     "A generator of its own, with the same seed for each sample.",
+     "the error does not fall with N",
+     "Does your error halve with four times the samples?"},
+    {&lc_estimator_hemisphere_two_sided, "hemisphere_direct", "sides",
+     "Method 1 of the lecture: what a ray meets shines.",
+     "a lamp seen from its back: not 0",
+     "Which side of a lamp is lit?"},
+    {&lc_estimator_path_clamped, "path", "thresholds",
+     "Fireflies are clamped.",
+     "emission x 1024: less than 1024 times",
+     "Make every lamp brighter by one factor."},
+    {&lc_estimator_path_ends_when_dim, "path", "thresholds",
+     "Dim paths end without roulette.",
+     "albedo x 1/2: less than 2^-k",
+     "Make every surface darker by one factor."},
+    {&lc_estimator_path_roulette_undivided, "path", "roulette",
+     "Roulette as an optimisation only.",
+     "bounce k: the product of all q",
+     "How often does a path survive, and what are survivors divided by?"},
+    {&lc_estimator_mirror_world_up, "mirror", "directions",
+     "A mirror tried on a floor.",
+     "the scene rotated: misplaced",
+     "Rotate the scene, and the camera with it."},
+    LC_MUTANT_END,
+};

@@ -3,6 +3,7 @@
  * Bugs of glossy reflection and of motion blur, one switch each.
  */
 #include "lightcheck.h"
+#include "registry.h"
 
 enum { NO_JACOBIAN = 1, NO_COSINE = 2, MIRROR_ONLY = 4, LAMP_AT_REST = 8, SHADOW_AT_REST = 16, NO_TIME = 32 };
 
@@ -100,3 +101,32 @@ LIGHT_MUTANT(light_lamp_at_rest, LAMP_AT_REST, "moving lamps are sampled, and se
 LIGHT_MUTANT(light_shadow_at_rest, SHADOW_AT_REST, "the shadow ray looks at time 0");
 MUTANT(hemisphere_no_time, "hemisphere_direct", by_direction, LC_DIFFUSE, LC_AREA | LC_SKY, NO_TIME,
        "the ray from the surface looks at time 0");
+
+/* Each after the estimator that it was. */
+const lc_mutant lc_effects_mutants[] = {
+    {&lc_estimator_glossy_no_jacobian, "glossy_direct", "density",
+     "The density is the half vector's, the sample is a direction.",
+     "a lamp in a rough mirror: 4 cos",
+     "Is your density one of facets or one of directions?"},
+    {&lc_estimator_glossy_no_cosine, "glossy_direct", "cosine",
+     "The mirror, which has none, was the model.",
+     "at a slant: 1 / cos",
+     "How much of a beam does a tilted surface catch?"},
+    {&lc_estimator_glossy_one_direction, "glossy_direct", "directions",
+     "The smooth mirror's direction is kept.",
+     "a lamp in a rough mirror: sharp",
+     "Where does light go that meets a tilted facet?"},
+    {&lc_estimator_light_lamp_at_rest, "light_direct", "time",
+     "Lamps are sampled where they were loaded.",
+     "a lamp that moves: the light of time 0",
+     "At which moment is the lamp where?"},
+    {&lc_estimator_light_shadow_at_rest, "light_direct", "time",
+     "A new ray starts with a new time.",
+     "an object that moves: a sharp shadow",
+     "At which moment does the shadow ray travel?"},
+    {&lc_estimator_hemisphere_no_time, "hemisphere_direct", "time",
+     "A new ray starts with a new time.",
+     "a lamp that moves: the light of time 0",
+     "At which moment does the next ray travel?"},
+    LC_MUTANT_END,
+};

@@ -38,9 +38,9 @@ static const lc_estimator *find(const char *name)
     for (const lc_estimator *const *e = lc_estimators; *e; ++e)
         if (strcmp((*e)->name, name) == 0)
             return *e;
-    for (const lc_mutant *m = lc_mutants; m->estimator; ++m)
-        if (strcmp(m->estimator->name, name) == 0)
-            return m->estimator;
+    const lc_mutant *mutant = lc_mutant_find(name);
+    if (mutant)
+        return mutant->estimator;
     ck_abort_msg("no estimator %s", name);
     return NULL;
 }

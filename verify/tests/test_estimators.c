@@ -76,7 +76,8 @@ START_TEST(descriptors_are_sane)
         for (const lc_estimator *const *f = lc_estimators; f < e; ++f)
             ck_assert_str_ne((*e)->name, (*f)->name);
     }
-    for (const lc_mutant *m = lc_mutants; m->estimator; ++m) {
+    const lc_mutant *m;
+    for (int i = 0; (m = lc_mutant_at(i)) != NULL; ++i) {
         int known = 0;
         ck_descriptor(m->estimator);
         for (const lc_estimator *const *e = lc_estimators; *e; ++e)

@@ -80,9 +80,9 @@ static const lc_estimator *find(const sentence *s, int *is_mutant)
         if (strcmp((*e)->name, s->estimator) == 0)
             return *e;
     *is_mutant = 1;
-    for (const lc_mutant *m = lc_mutants; m->estimator; ++m)
-        if (strcmp(m->estimator->name, s->estimator) == 0)
-            return m->estimator;
+    const lc_mutant *mutant = lc_mutant_find(s->estimator);
+    if (mutant)
+        return mutant->estimator;
     ck_abort_msg("\"%s\": no estimator %s", s->text, s->estimator);
     return NULL;
 }

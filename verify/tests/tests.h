@@ -46,5 +46,6 @@ Suite *lc_suite_metamorphic(void);
 Suite *lc_suite_family(void);
 Suite *lc_suite_lecture(void);
 Suite *lc_suite_convergence(void);
+Suite *lc_suite_diagnose(void);
 
 #endif
