@@ -69,6 +69,9 @@ typedef struct lc_check {
 
 extern const lc_check *const lc_checks[]; /* ends with NULL */
 
+/* 0 where POV-Ray renders the scene for the check of that name; else 1, and why it does not, in words. */
+int lc_povray_excuse(lc_error *why, const lc_scene *scene);
+
 /* Appends a claim of `check` with bounces 1 to 1; NULL without memory. */
 lc_claim *lc_claims_add(lc_claims *claims, const lc_check *check, const lc_scene *scene, const lc_estimator *estimator);
 void lc_claims_release(lc_claims *claims);
