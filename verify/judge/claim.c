@@ -12,7 +12,7 @@ static const char *const channel_names[] = {"R", "G", "B"};
 
 /* ---- words ---------------------------------------------------------------------------------------------------- */
 
-static void describe_bad(lc_row *row, const lc_film *film, uint64_t seed)
+void lc_row_bad(lc_row *row, const lc_film *film, uint64_t seed)
 {
     row->verdict = LC_ROW_FAIL;
     snprintf(row->reason, sizeof row->reason,
@@ -32,7 +32,7 @@ static lc_status describe_missing(lc_row *row, const lc_error *err)
     return LC_OK;
 }
 
-static void describe(lc_row *row, const lc_pyramid *p)
+void lc_row_describe(lc_row *row, const lc_pyramid *p)
 {
     if (row->verdict == LC_ROW_FAIL) {
         double whole = 100 * (row->ratio - 1);
@@ -61,7 +61,7 @@ static void describe(lc_row *row, const lc_pyramid *p)
 /* ---- numbers -------------------------------------------------------------------------------------------------- */
 
 /* Writes what the pyramid of one channel found into the row. */
-static void fill_numbers(lc_row *row, const lc_pyramid *p, int channel, double scale, double alpha_pass, double n)
+void lc_row_numbers(lc_row *row, const lc_pyramid *p, int channel, double scale, double alpha_pass, double n)
 {
     const lc_student *s = &p->whole.student;
     lc_interval interval = lc_student_interval(s, 2 * alpha_pass);
@@ -83,7 +83,7 @@ static void fill_numbers(lc_row *row, const lc_pyramid *p, int channel, double s
 }
 
 /* How hard the channel was: FAIL before undecided before PASS, then by the deviation. */
-static double hardness(const lc_pyramid *p, double scale)
+double lc_row_hardness(const lc_pyramid *p, double scale)
 {
     double step = p->verdict == LC_FAIL ? 2e9 : p->verdict == LC_GO_ON ? 1e9 : 0;
     double deviation = fabs(p->whole.student.difference) / scale;
@@ -91,7 +91,7 @@ static double hardness(const lc_pyramid *p, double scale)
 }
 
 /* Mean over the pixels that are not skipped, of the film or of the expected values. */
-static double mean_of(const lc_film *film, const lc_expected *expected, const unsigned char *skip, int channel)
+double lc_claim_mean(const lc_film *film, const lc_expected *expected, const unsigned char *skip, int channel)
 {
     size_t count =
                film ? (size_t)film->width * (size_t)film->height : (size_t)expected->width * (size_t)expected->height,
@@ -148,7 +148,7 @@ static lc_status judge_exact(lc_row *row, lc_session *session, const lc_claim *c
         return status;
     row->paths = row->samples * (uint64_t)film->width * (uint64_t)film->height;
     if (film->bad)
-        describe_bad(row, film, session->options->seed);
+        lc_row_bad(row, film, session->options->seed);
     else
         compare_exactly(row, film, other, expected, claim->tolerance);
     return LC_OK;
@@ -169,8 +169,8 @@ static int is_still(const lc_film *film, const lc_expected *expected)
 /* ---- statistical claims -------------------------------------------------------------------------------------------- */
 
 /* c of an estimator on a scene: from the table, else from a pilot whose samples are never used again. */
-static lc_status noise_of(double *c, lc_session *session, const lc_claim *claim, const lc_estimator *estimator,
-                          lc_error *err)
+lc_status lc_claim_noise(double *c, lc_session *session, const lc_claim *claim, const lc_estimator *estimator,
+                         lc_error *err)
 {
     *c = claim->min_bounces == 1 && lc_is_registered(estimator)
              ? lc_cell_noise(lc_scene_description(claim->scene)->name, estimator->name, claim->max_bounces)
@@ -200,9 +200,9 @@ static lc_status judge_look(look_result *out, const lc_film *film, const lc_film
     out->verdict = LC_PASS;
     for (int c = 0; c < 3; ++c) {
         lc_pyramid pyramid;
-        double scale = mean_of(other, expected, skip, c);
+        double scale = lc_claim_mean(other, expected, skip, c);
         /* Where nothing is expected, any light at all is wrong by infinitely many percent: the margin is then of what was seen. */
-        double unit = scale > 0 ? scale : mean_of(film, NULL, skip, c);
+        double unit = scale > 0 ? scale : lc_claim_mean(film, NULL, skip, c);
         plan->margin[lc_pyramid_levels(film->width, film->height) - 1] = unit > 0 ? margin * unit : INFINITY;
         plan->relative = other ? margin : 0;
         lc_status status = other ? lc_field_two(field, film, other, c, tolerance * scale, err)
@@ -215,8 +215,8 @@ static lc_status judge_look(look_result *out, const lc_film *film, const lc_film
         if (status != LC_OK)
             return status;
         out->verdict = lc_verdict_both(out->verdict, pyramid.verdict);
-        if (hardness(&pyramid, unit) > most) {
-            most = hardness(&pyramid, unit);
+        if (lc_row_hardness(&pyramid, unit) > most) {
+            most = lc_row_hardness(&pyramid, unit);
             out->hardest = pyramid;
             out->channel = c;
             out->scale = unit;
@@ -245,9 +245,9 @@ static lc_status judge_statistically(lc_row *row, lc_session *session, const lc_
     const lc_scene_desc *desc = lc_scene_description(claim->scene);
     int pixels = desc->width * desc->height;
     double c, c_other = 0;
-    lc_status status = noise_of(&c, session, claim, claim->estimator, err);
+    lc_status status = lc_claim_noise(&c, session, claim, claim->estimator, err);
     if (status == LC_OK && claim->other)
-        status = noise_of(&c_other, session, claim, claim->other, err);
+        status = lc_claim_noise(&c_other, session, claim, claim->other, err);
     if (status != LC_OK)
         return status;
     row->margin = fmax(session->margin * fmax(1.0, c), claim->margin);
@@ -282,7 +282,7 @@ static lc_status judge_statistically(lc_row *row, lc_session *session, const lc_
             return status;
         row->paths = row->samples * (uint64_t)pixels;
         if (film->bad || (other && other->bad)) {
-            describe_bad(row, film->bad ? film : other, session->options->seed);
+            lc_row_bad(row, film->bad ? film : other, session->options->seed);
             return LC_OK;
         }
         if (claim->may_be_still && expected && is_still(film, expected)) {
@@ -295,8 +295,8 @@ static lc_status judge_statistically(lc_row *row, lc_session *session, const lc_
     if (status != LC_OK)
         return status;
     row->verdict = result.verdict == LC_PASS ? LC_ROW_PASS : result.verdict == LC_FAIL ? LC_ROW_FAIL : LC_ROW_UNDECIDED;
-    fill_numbers(row, &result.hardest, result.channel, result.scale, plan.alpha_pass, (double)row->paths);
-    describe(row, &result.hardest);
+    lc_row_numbers(row, &result.hardest, result.channel, result.scale, plan.alpha_pass, (double)row->paths);
+    lc_row_describe(row, &result.hardest);
     return LC_OK;
 }
 
@@ -325,9 +325,14 @@ lc_status lc_judge_claim(lc_row *row, lc_session *session, const lc_claim *claim
     snprintf(row->source, sizeof row->source, "%s", claim->source);
     snprintf(row->reproduce, sizeof row->reproduce, "%s verify --suite %s -c %s -e %s --scene %s --seed %llu",
              o->program, o->suite->name, row->check, row->estimator, row->scene, (unsigned long long)o->seed);
+    if (lc_is_foreign(session, claim->estimator))
+        snprintf(row->reproduce, sizeof row->reproduce, "%s verify --suite %s -c %s --renderer %.300s --scene %s --seed %llu",
+                 o->program, o->suite->name, row->check, o->renderer->path, desc->name, (unsigned long long)o->seed);
     row->exact = claim->exact;
     row->min_bounces = claim->min_bounces;
     row->max_bounces = claim->max_bounces;
+    if (lc_is_foreign(session, claim->estimator))
+        return lc_judge_foreign(row, session, claim, err);
     if (claim->exact)
         return judge_exact(row, session, claim, err);
     lc_estimate *field = malloc(sizeof *field * (size_t)desc->width * (size_t)desc->height);
@@ -367,7 +372,7 @@ lc_status lc_compare_films(lc_row *row, const lc_film *a, const lc_film *b, doub
     row->samples = a->count;
     row->paths = a->count * (uint64_t)a->width * (uint64_t)a->height;
     row->verdict = result.verdict == LC_PASS ? LC_ROW_PASS : result.verdict == LC_FAIL ? LC_ROW_FAIL : LC_ROW_UNDECIDED;
-    fill_numbers(row, &result.hardest, result.channel, result.scale, plan.alpha_pass, (double)row->paths);
-    describe(row, &result.hardest);
+    lc_row_numbers(row, &result.hardest, result.channel, result.scale, plan.alpha_pass, (double)row->paths);
+    lc_row_describe(row, &result.hardest);
     return LC_OK;
 }

@@ -45,13 +45,17 @@ static lc_status plan_scene(lc_claims *claims, int *not_applicable, const lc_ver
     return LC_OK;
 }
 
-/* Claims for the full suite only are dropped from the quick one, before rows are counted. */
-static void drop_full_only(lc_claims *claims)
+/* Claims for the full suite only are dropped from the quick one, before rows are counted. One bounce against a closed form
+ * is kept for another renderer, which has no direct estimator beside it that is held to that. */
+static void drop_full_only(lc_claims *claims, const lc_adapter *renderer)
 {
     int kept = 0;
-    for (int i = 0; i < claims->count; ++i)
-        if (!claims->items[i].full_only)
+    for (int i = 0; i < claims->count; ++i) {
+        const lc_claim *c = &claims->items[i];
+        int is_kept = renderer && c->estimator == &renderer->estimator && c->expect && c->max_bounces == 1;
+        if (!c->full_only || is_kept)
             claims->items[kept++] = claims->items[i];
+    }
     claims->count = kept;
 }
 
@@ -62,6 +66,17 @@ static lc_status plan_host(lc_claims *claims, lc_error *err)
         if ((*c)->plan_host)
             status = (*c)->plan_host(*c, claims, err);
     return status;
+}
+
+/* Why POV-Ray has nothing to say about a scene. */
+static lc_status collect_excuse(lc_report *report, const lc_verify_options *o, const lc_scene *scene, lc_error *err)
+{
+    const char *name = lc_scene_description(scene)->name;
+    lc_error why = {""};
+    if (o->estimator || (o->check && strcmp(o->check, "povray") != 0) || (o->scene && strcmp(o->scene, name) != 0) ||
+        !lc_povray_excuse(&why, scene))
+        return LC_OK;
+    return lc_report_note(report, "povray", name, why.text, err);
 }
 
 static int is_selected(const lc_verify_options *o, const lc_claim *claim)
@@ -90,10 +105,16 @@ static lc_status judge_all(lc_report *report, lc_session *session, const lc_clai
         if (!row)
             return lc_fail(err, LC_FAULT, "out of memory for the report");
         lc_status status = lc_judge_claim(row, session, &claims->items[i], err);
-        if (status != LC_OK) {
+        if (status != LC_OK)
             --report->count;
-            return status;
+        if (status == LC_BAD_INPUT && !claims->items[i].decide && lc_is_foreign(session, claims->items[i].estimator)) {
+            status = lc_report_note(report, claims->items[i].check->name, lc_scene_description(scene)->name, err->text, err);
+            --selected;
+            if (status == LC_OK)
+                continue;
         }
+        if (status != LC_OK)
+            return status;
         if (o->on_row)
             o->on_row(o->user, row, report->count, selected);
     }
@@ -118,10 +139,12 @@ lc_status lc_verify(lc_report *report, const lc_verify_options *options, lc_load
         status = load(&scenes[scene_count], lc_suite_scenes[i], err);
         if (status == LC_OK)
             status = plan_scene(&claims, &report->not_applicable, options, scenes[scene_count++], err);
+        if (status == LC_OK)
+            status = collect_excuse(report, options, scenes[scene_count - 1], err);
     }
     if (status == LC_OK) {
         if (strcmp(options->suite->name, "quick") == 0)
-            drop_full_only(&claims);
+            drop_full_only(&claims, options->renderer);
         session.rows = claims.count;
         lc_budget budget = {options->false_fail, options->false_pass, session.rows, 3, LC_MOST_LOOKS};
         lc_budget_text(report->budget, sizeof report->budget, &budget, 64, 64);

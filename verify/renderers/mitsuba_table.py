@@ -165,13 +165,14 @@ def plan_rows(scenes):
             note = " (Mitsuba: mirror of the blend rough)"
         depth = re.search(r'name="max_depth" value="(\d+)"', text)
         special = "conductor" in text or "dielectric" in text
-        if not special and ('"constant"' not in text or scene == "sky"):
+        has_sky = '"constant"' in text  # which no direct estimator of lights reaches
+        if not special and not has_sky:
             inside = scene in INSIDE_LAMP
             rows.append((scene, "light_direct", 1, 4096, text, "direct_emitter" if inside else "path",
                          note + " (Mitsuba: samples lamps only)" * inside))
         if scene in INSIDE_LAMP:
             continue
-        if special or depth and int(depth.group(1)) > 2:
+        if special or has_sky or depth and int(depth.group(1)) > 2:
             rows.append((scene, path, None, 8192 if path == "dielectric" else 4096, text, "path", note))
     return rows
 

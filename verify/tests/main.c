@@ -12,7 +12,7 @@ static Suite *(*const suites[])(void) = {
     lc_suite_surface,  lc_suite_render,         lc_suite_bsdf,          lc_suite_energy,
     lc_suite_cli,      lc_suite_report,         lc_suite_estimators,    lc_suite_judge_mutants,
     lc_suite_povray,   lc_suite_verify,         lc_suite_mutants,
-    lc_suite_scene_write,
+    lc_suite_scene_write, lc_suite_adapter,
 };
 
 int main(void)
