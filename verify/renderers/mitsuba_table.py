@@ -27,7 +27,7 @@ REPLICATES, SPP = 128, 8  # of Mitsuba, and of each of its replicates
 ROUNDING = (20 + SPP) * 2.0**-24
 # It lifts each ray off its surface by 1500 * 2^-24 (1 + max |p|) along the normal (interaction.h, math.h). Where a chain of
 # mirrors adds that up, edges move: the corridor's, lifted by 3.6e-4 m at each of up to 12 mirrors, which stand 2 m apart.
-# mitsuba_offset.py walks the corridor in double with that offset and finds what is missing here, 6e-5 of the mean.
+# study.py walks the corridor in double with that offset and finds what is missing here, 6e-5 of the mean.
 SHIFT = {"mirror_corridor": (1500 * 2.0**-24, 1e-3)}  # tolerances relative to the mean: the image's, a tile's
 # Scaled by 1e-3, that offset is 4% of the box: the file is held against Mitsuba's image of the unscaled one, which is the same.
 UNIT_SCALE = {"cornell_small": "cornell"}

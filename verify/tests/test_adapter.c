@@ -11,6 +11,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "estimators/registry.h"
 #include "io/scene_path.h"
 #include "io/scene_read.h"
 #include "verify/judge/judge.h"
@@ -247,6 +248,53 @@ START_TEST(what_is_refused_is_noted)
 }
 END_TEST
 
+/* In the language of the example, where it is installed: mean irradiance within six standard errors, and a refusal. */
+START_TEST(the_example_renders_what_it_says)
+{
+    char python[LC_PROGRAM_PATH];
+    lc_adapter a;
+    lc_scene_desc desc;
+    lc_scene *scene;
+    lc_film *film;
+    if (!lc_program_find(python, "python3"))
+        return;
+    ck_assert_msg(lc_adapter_open(&a, "verify/renderers/example.py", 60, &err) == LC_OK, "%s", err.text);
+    ck_assert_str_eq(a.name, "example");
+    ck_assert_int_eq(a.estimator.max_bounces, 1);
+    read_scene(&desc, "plane_rectangle");
+    desc.width = desc.height = 12;
+    enum { FLOATS = 3 * 12 * 12, SAMPLES = 64 };
+    float rgb[FLOATS];
+    lc_adapter_job job = {&desc, 1, SAMPLES, 3, 1};
+    ck_assert_msg(lc_adapter_render(rgb, &a, &job, &err) == LC_OK, "%s", err.text);
+    ck_assert_int_eq(lc_scene_build(&scene, &desc, &err), LC_OK);
+    ck_assert_int_eq(lc_film_create(&film, 12, 12, &err), LC_OK);
+    const lc_estimator *const *e = lc_estimators;
+    while (strcmp((*e)->name, "light_direct") != 0)
+        ++e;
+    lc_render_options options = {.max_bounces = 1, .seed = 1, .arm = 1, .count = 4096, .threads = 2};
+    ck_assert_int_eq(lc_render(film, scene, *e, &options, &err), LC_OK);
+    for (int c = 0; c < 3; ++c) {
+        double mine = 0, its = 0, variance = 0;
+        for (int i = 0; i < 144; ++i) {
+            mine += film->pixels[i].c[c].mean;
+            its += (double)rgb[3 * i + c];
+            variance += lc_pixel_variance(&film->pixels[i], c) * (1 + 4096.0 / SAMPLES);
+        }
+        ck_assert_msg(fabs(its - mine) < 6 * sqrt(variance), "%g, expected %g +- %g", its, mine, sqrt(variance));
+        ck_assert_double_lt(6 * sqrt(variance), 0.05 * mine);
+    }
+    lc_film_free(film);
+    lc_scene_free(scene);
+    lc_scene_desc_release(&desc);
+    read_scene(&desc, "cornell");
+    job.scene = &desc;
+    ck_assert_int_eq(lc_adapter_render(rgb, &a, &job, &err), LC_BAD_INPUT);
+    ck_assert_msg(strstr(err.text, "two rectangles") != NULL, "%s", err.text);
+    lc_scene_desc_release(&desc);
+}
+END_TEST
+
 Suite *lc_suite_adapter(void)
 {
     Suite *suite = suite_create("adapter");
@@ -259,6 +307,7 @@ Suite *lc_suite_adapter(void)
     tcase_add_loop_test(tc, every_failure_is_said, 0, sizeof failures / sizeof failures[0]);
     tcase_add_loop_test(tc, right_adapters_pass_and_wrong_ones_fail, 0, sizeof verdicts / sizeof verdicts[0]);
     tcase_add_test(tc, what_is_refused_is_noted);
+    tcase_add_test(tc, the_example_renders_what_it_says);
     suite_add_tcase(suite, tc);
     return suite;
 }
