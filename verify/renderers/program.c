@@ -20,11 +20,22 @@ extern char **environ; /* POSIX asks for the declaration */
 
 /* The group that is waited for; one at a time. */
 static volatile sig_atomic_t running;
+static char running_in[LC_PROGRAM_PATH]; /* its folder */
 
 void lc_program_end(void)
 {
-    if (running > 0)
-        kill(-(pid_t)running, SIGKILL);
+    char program[] = "/bin/rm", option[] = "-rf";
+    char *const arguments[] = {program, option, running_in, NULL};
+    if (running <= 0)
+        return;
+    kill(-(pid_t)running, SIGKILL);
+    pid_t child = fork();
+    if (child == 0) {
+        execve(program, arguments, environ);
+        _exit(127);
+    }
+    if (child > 0)
+        waitpid(child, NULL, 0);
 }
 
 /* Searched here, for a child may not. */
@@ -102,6 +113,7 @@ lc_status lc_program_run(int *exit_status, const lc_program *program, lc_error *
     if (child == 0)
         become(program, arguments.taken);
     setpgid(child, child); /* whoever comes first */
+    snprintf(running_in, sizeof running_in, "%s", program->folder);
     running = child;
     lc_status status = wait_for(child, program, exit_status, err);
     running = 0;

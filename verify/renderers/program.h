@@ -23,7 +23,7 @@ typedef struct lc_program {
 int lc_program_find(char path[LC_PROGRAM_PATH], const char *name);
 /* Runs it to its end; `exit_status` as from waitpid. LC_FAULT when it cannot be started or ran out of time. */
 lc_status lc_program_run(int *exit_status, const lc_program *program, lc_error *err);
-/* Kills what lc_program_run() is waiting for; async-signal-safe, for a handler about to end the process. */
+/* Kills what lc_program_run() is waiting for and removes its folder; async-signal-safe, for a handler about to end the process. */
 void lc_program_end(void);
 /* A new empty folder under $TMPDIR or /tmp; its path is shorter than LC_PROGRAM_PATH - 64. */
 lc_status lc_program_folder(char folder[LC_PROGRAM_PATH], lc_error *err);
