@@ -136,6 +136,7 @@ static lc_status judge_exact(lc_row *row, lc_session *session, const lc_claim *c
 {
     const lc_film *film, *other = NULL;
     const lc_expected *expected = NULL;
+    lc_error why = {""};
     uint32_t arm = lc_session_arm(claim->estimator);
     row->samples = LC_BLOCK;
     lc_status status = lc_session_film(&film, session, claim->scene, claim->estimator, claim->min_bounces,
@@ -143,9 +144,11 @@ static lc_status judge_exact(lc_row *row, lc_session *session, const lc_claim *c
     if (status == LC_OK)
         status = claim->other ? lc_session_film(&other, session, claim->scene, claim->other, claim->min_bounces,
                                                 claim->max_bounces, arm, row->samples, err)
-                              : lc_session_values(&expected, session, claim, err);
+                              : lc_session_values(&expected, session, claim, &why);
+    if (status == LC_WRONG)
+        return describe_missing(row, &why);
     if (status != LC_OK)
-        return status;
+        return why.text[0] ? lc_fail(err, status, "%s", why.text) : status;
     row->paths = row->samples * (uint64_t)film->width * (uint64_t)film->height;
     if (film->bad)
         lc_row_bad(row, film, session->options->seed);
