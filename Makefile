@@ -60,8 +60,8 @@ TEST := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard verify/tests/*.c))
 # The proofs of the judge: programs of their own, two of whose files have a main.
 PROOF := $(patsubst %.c,$(BUILD)/obj/%.o,$(filter-out %/calibrate.c %/power.c,$(wildcard verify/proof/*.c)))
 
-.PHONY: all check verify verify-table full-table pictures povray-reference lint asan-check calibrate power judge-mutants \
-        mutants bench needs fresh clean help
+.PHONY: all check verify verify-table full-table pictures povray-reference mitsuba-table renderer-study lint asan-check \
+        calibrate power judge-mutants mutants bench needs fresh clean help
 all: $(BUILD)/lightcheck $(BUILD)/obj/estimators/template.o ## build the program
 
 $(BUILD)/lightcheck: $(CLI) $(LIB)
@@ -110,6 +110,12 @@ check: all $(BUILD)/tests ## run the unit and command-line tests, and the exampl
 
 povray-reference: all ## render the references of the povray check anew (needs POV-Ray, takes minutes)
 	$(BUILD)/lightcheck reference
+
+mitsuba-table: all ## every scene against Mitsuba 3: results/mitsuba.md (needs `pip install mitsuba numpy`; PYTHON=interpreter)
+	$(or $(PYTHON),python3) verify/renderers/mitsuba_table.py -o results/mitsuba.md
+
+renderer-study: all ## what the suite finds in Mitsuba 3 and POV-Ray: results/renderers.md (needs both; PYTHON=interpreter)
+	$(or $(PYTHON),python3) verify/renderers/study.py -o results/renderers.md
 
 asan-check: ## the same under the address and undefined-behaviour sanitizers
 	$(MAKE) BUILD=$(BUILD)/asan SANITIZE=address,undefined CFLAGS='-O1 -g' check

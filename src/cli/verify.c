@@ -10,8 +10,8 @@
 #include "verify/judge/judge.h"
 
 typedef struct verify_arguments {
-    const char *suite, *estimator, *check, *scene, *seed, *format, *report;
-    double margin, budget;
+    const char *suite, *estimator, *check, *scene, *seed, *format, *report, *renderer;
+    double margin, budget, seconds;
     int threads, measure;
 } verify_arguments;
 
@@ -109,6 +109,7 @@ static lc_status verify(void *user, const lc_strings *rest, lc_error *err)
         return lc_fail(err, LC_BAD_INPUT, "unexpected argument '%s'", rest->items[0]);
     lc_verify_options options;
     lc_report report;
+    lc_adapter adapter;
     lc_verify_options_init(&options);
     options.suite = lc_suite_find(a->suite);
     options.margin = a->margin;
@@ -122,13 +123,22 @@ static lc_status verify(void *user, const lc_strings *rest, lc_error *err)
         status = read_seed(&options.seed, a->seed, err);
     if (status == LC_OK && a->estimator)
         status = lc_cli_find_estimator(&options.estimator, a->estimator, err);
+    if (status == LC_OK && a->renderer && a->estimator)
+        status = lc_fail(err, LC_BAD_INPUT, "--renderer and -e: one or the other is put to the test");
+    if (status == LC_OK && a->renderer)
+        status = lc_adapter_open(&adapter, a->renderer, a->seconds, err);
+    if (status == LC_OK && a->renderer) {
+        options.renderer = &adapter;
+        options.estimator = &adapter.estimator;
+    }
     if (status != LC_OK)
         return status;
     if (a->measure)
         return lc_measure_cells(load_scene, options.estimator, a->scene, print_line, NULL, err);
     status = lc_verify(&report, &options, load_scene, err);
     if (status == LC_OK && report.count == 0)
-        status = lc_fail(err, LC_BAD_INPUT, "nothing to verify: no check applies to what was selected");
+        status = report.note_count ? lc_fail(err, LC_BAD_INPUT, "nothing to verify: %s", report.notes[0].reason)
+                                   : lc_fail(err, LC_BAD_INPUT, "nothing to verify: no check applies to what was selected");
     if (status == LC_OK && a->report)
         status = write_folder(a->report, &report, err);
     if (status == LC_OK) {
@@ -147,11 +157,14 @@ static lc_status verify(void *user, const lc_strings *rest, lc_error *err)
 
 static int run(const lc_command *self, int argc, char **argv)
 {
-    verify_arguments a = {.suite = "quick", .seed = "1", .format = "text", .budget = 1e-6};
+    verify_arguments a = {.suite = "quick", .seed = "1", .format = "text", .budget = 1e-6, .seconds = 600};
     const lc_option options[] = {
         {0, "suite", LC_OPT_CHOICE, &a.suite, "quick|full", "margins 0.5% or 0.25% times max(1, c); default quick", 0,
          0, "quick|full"},
         {'e', "estimator", LC_OPT_STRING, &a.estimator, "NAME", "only this estimator, or a mutant", 0, 0, NULL},
+        {0, "renderer", LC_OPT_STRING, &a.renderer, "ADAPTER",
+         "only this program: ADAPTER scene.xml W H SPP SEED BOUNCES OUT.exr", 0, 0, NULL},
+        {0, "seconds", LC_OPT_NUMBER, &a.seconds, "S", "that one call of ADAPTER may take; default 600", 0.1, 1e6, NULL},
         {'c', "check", LC_OPT_STRING, &a.check, "CHECK", "only this kind (see `lightcheck list checks`)", 0, 0, NULL},
         {0, "scene", LC_OPT_STRING, &a.scene, "SCENE", "only this scene of the suite", 0, 0, NULL},
         {0, "margin", LC_OPT_NUMBER, &a.margin, "M", "relative, for estimators with c <= 1; default: the suite's", 0, 1,

@@ -86,6 +86,9 @@ lc_expect_fn lc_expect_direct;
 /* The light inside a sphere of any emission and albedo. */
 lc_expect_fn lc_expect_inside;
 
+/* 0 where POV-Ray renders the scene for the check of that name; else 1, and why it does not, in words. */
+int lc_povray_excuse(lc_error *why, const lc_scene *scene);
+
 /* Appends a claim of `check` with bounces 1 to 1; NULL without memory. */
 lc_claim *lc_claims_add(lc_claims *claims, const lc_check *check, const lc_scene *scene, const lc_estimator *estimator);
 void lc_claims_release(lc_claims *claims);

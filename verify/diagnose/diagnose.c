@@ -74,7 +74,8 @@ typedef struct diagnosing {
 
 static int same_language(const lc_estimator *a, const lc_estimator *b)
 {
-    return a->lobes == b->lobes && a->emitters == b->emitters && (a->max_bounces == 1) == (b->max_bounces == 1);
+    /* Rough mirrors stand in no view. */
+    return ((a->lobes ^ b->lobes) & ~(unsigned)LC_GLOSSY) == 0 && a->emitters == b->emitters && (a->max_bounces == 1) == (b->max_bounces == 1);
 }
 
 /* 1 when a film shows no variance at all. */

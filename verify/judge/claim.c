@@ -91,7 +91,7 @@ double lc_row_hardness(const lc_pyramid *p, double scale)
 }
 
 /* Mean over the pixels that are not skipped, of the film or of the expected values. */
-static double mean_of(const lc_film *film, const lc_expected *expected, const unsigned char *skip, int channel)
+double lc_claim_mean(const lc_film *film, const lc_expected *expected, const unsigned char *skip, int channel)
 {
     size_t count =
                film ? (size_t)film->width * (size_t)film->height : (size_t)expected->width * (size_t)expected->height,
@@ -136,6 +136,7 @@ static lc_status judge_exact(lc_row *row, lc_session *session, const lc_claim *c
 {
     const lc_film *film, *other = NULL;
     const lc_expected *expected = NULL;
+    lc_error why = {""};
     uint32_t arm = lc_session_arm(claim->estimator);
     row->samples = LC_BLOCK;
     lc_status status = lc_session_film(&film, session, claim->scene, claim->estimator, claim->min_bounces,
@@ -143,9 +144,11 @@ static lc_status judge_exact(lc_row *row, lc_session *session, const lc_claim *c
     if (status == LC_OK)
         status = claim->other ? lc_session_film(&other, session, claim->scene, claim->other, claim->min_bounces,
                                                 claim->max_bounces, arm, row->samples, err)
-                              : lc_session_values(&expected, session, claim, err);
+                              : lc_session_values(&expected, session, claim, &why);
+    if (status == LC_WRONG)
+        return describe_missing(row, &why);
     if (status != LC_OK)
-        return status;
+        return why.text[0] ? lc_fail(err, status, "%s", why.text) : status;
     row->paths = row->samples * (uint64_t)film->width * (uint64_t)film->height;
     if (film->bad)
         lc_row_bad(row, film, session->options->seed);
@@ -219,6 +222,15 @@ static lc_status noise_of(double *c, lc_session *session, const side *s, lc_erro
     return status;
 }
 
+lc_status lc_claim_noise(double *c, lc_session *session, const lc_claim *claim, const lc_estimator *estimator,
+                         lc_error *err)
+{
+    side s = first_side(claim);
+    s.estimator = estimator;
+    s.arm = lc_session_arm(estimator);
+    return noise_of(c, session, &s, err);
+}
+
 typedef struct look_result {
     lc_verdict verdict;
     lc_pyramid hardest;
@@ -234,9 +246,9 @@ static lc_status judge_look(look_result *out, const lc_film *film, const lc_film
     out->verdict = LC_PASS;
     for (int c = 0; c < 3; ++c) {
         lc_pyramid pyramid;
-        double scale = mean_of(other, expected, skip, c);
+        double scale = lc_claim_mean(other, expected, skip, c);
         /* Where nothing is expected, any light at all is wrong by infinitely many percent: the margin is then of what was seen. */
-        double unit = scale > 0 ? scale : mean_of(film, NULL, skip, c);
+        double unit = scale > 0 ? scale : lc_claim_mean(film, NULL, skip, c);
         plan->margin[lc_pyramid_levels(film->width, film->height) - 1] = unit > 0 ? margin * unit : INFINITY;
         plan->relative = other ? margin : 0;
         lc_status status = other ? lc_field_two(field, film, other, c, tolerance * scale, err)
@@ -419,9 +431,14 @@ lc_status lc_judge_claim(lc_row *row, lc_session *session, const lc_claim *claim
     snprintf(row->source, sizeof row->source, "%s", claim->source);
     snprintf(row->reproduce, sizeof row->reproduce, "%s verify --suite %s -c %s -e %s --scene %s --seed %llu",
              o->program, o->suite->name, row->check, row->estimator, desc->name, (unsigned long long)o->seed);
+    if (lc_is_foreign(session, claim->estimator))
+        snprintf(row->reproduce, sizeof row->reproduce, "%s verify --suite %s -c %s --renderer %.300s --scene %s --seed %llu",
+                 o->program, o->suite->name, row->check, o->renderer->path, desc->name, (unsigned long long)o->seed);
     row->exact = claim->exact;
     row->min_bounces = claim->min_bounces;
     row->max_bounces = claim->max_bounces;
+    if (lc_is_foreign(session, claim->estimator))
+        return lc_judge_foreign(row, session, claim, err);
     if (claim->decide)
         return judge_by_itself(row, session, claim, lc_session_arm(claim->estimator), err);
     if (claim->exact)

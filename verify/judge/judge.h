@@ -7,6 +7,7 @@
 #define LC_JUDGE_H
 
 #include "verify/checks/checks.h"
+#include "verify/renderers/adapter.h"
 #include "verify/report/report.h"
 
 /* ---- suites ------------------------------------------------------------------------------------------------ */
@@ -47,6 +48,7 @@ typedef struct lc_verify_options {
     int threads;
     const lc_estimator *estimator; /* only this one (it need not be in the registry), or NULL: all */
     const char *check, *scene;     /* only these, or NULL */
+    const lc_adapter *renderer;    /* another program whose estimator `estimator` is, or NULL */
     /* Called after each row, in the order of the report; may be NULL. */
     void (*on_row)(void *user, const lc_row *row, int done, int count);
     void *user;

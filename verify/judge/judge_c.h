@@ -34,6 +34,7 @@ typedef struct lc_session {
     int rows; /* among which the budget is split */
     double margin;
     uint64_t paths;
+    struct lc_foreign *foreign; /* what is known of the renderer under test on this scene; NULL: nothing yet */
 } lc_session;
 
 enum { LC_MOST_LOOKS = 5 };
@@ -66,6 +67,18 @@ lc_status lc_judge_paired(lc_row *row, lc_session *session, const lc_claim *clai
 double lc_claim_margin(const lc_session *session, const lc_claim *claim, double c);
 void lc_plan_whole(lc_pyramid_plan *plan, int width, int height);
 int lc_row_looks(uint64_t samples[LC_MOST_LOOKS], uint64_t planned, uint64_t most);
+/* The same for a claim about the renderer under test, in foreign.c; LC_BAD_INPUT when it refuses the scene, or the claim asks
+ * for what no image can tell. */
+lc_status lc_judge_foreign(lc_row *row, lc_session *session, const lc_claim *claim, lc_error *err);
+/* 1 for the estimator of the renderer under test. */
+int lc_is_foreign(const lc_session *session, const lc_estimator *estimator);
+void lc_foreign_free(struct lc_foreign *foreign);
+
+/* c of an estimator of ours on the claim's scene, from the table or from a pilot. */
+lc_status lc_claim_noise(double *c, lc_session *session, const lc_claim *claim, const lc_estimator *estimator,
+                         lc_error *err);
+/* Mean over the pixels that are not skipped, of the film or else of the expected values. */
+double lc_claim_mean(const lc_film *film, const lc_expected *expected, const unsigned char *skip, int channel);
 /* How hard a channel was: the hardest one is shown. */
 double lc_row_hardness(const lc_pyramid *p, double scale);
 /* Writes into the row what the pyramid of a channel found; then FAIL or UNDECIDED in words; then, of a film, bad samples. */

@@ -146,6 +146,8 @@ void lc_session_clear(lc_session *session)
         release_expected(&session->values[i].expected);
     free(session->films);
     free(session->values);
+    lc_foreign_free(session->foreign);
+    session->foreign = NULL;
     session->films = NULL;
     session->values = NULL;
     session->film_count = session->value_count = 0;

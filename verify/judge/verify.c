@@ -60,13 +60,19 @@ static lc_status plan_scene(lc_claims *claims, int *not_applicable, const lc_ver
     return LC_OK;
 }
 
-/* Before rows are counted. */
-static void keep_suite(lc_claims *claims, const lc_suite *suite)
+/* Before rows are counted. Of another renderer there are images only: no relation between samples, no decision by checks of their
+ * own; one bounce against a closed form is kept, since it has no direct estimator beside it that is held to that. */
+static void keep_suite(lc_claims *claims, const lc_suite *suite, const lc_adapter *renderer)
 {
     int kept = 0;
-    for (int i = 0; i < claims->count; ++i)
-        if (lc_suite_has(suite, &claims->items[i]))
+    for (int i = 0; i < claims->count; ++i) {
+        const lc_claim *c = &claims->items[i];
+        int is_foreign = renderer && c->estimator == &renderer->estimator;
+        if (is_foreign && (c->term_count || c->decide))
+            continue;
+        if (lc_suite_has(suite, c) || (is_foreign && c->expect && c->max_bounces == 1))
             claims->items[kept++] = claims->items[i];
+    }
     claims->count = kept;
 }
 
@@ -77,6 +83,17 @@ static lc_status plan_host(lc_claims *claims, lc_error *err)
         if ((*c)->plan_host)
             status = (*c)->plan_host(*c, claims, err);
     return status;
+}
+
+/* Why POV-Ray has nothing to say about a scene. */
+static lc_status collect_excuse(lc_report *report, const lc_verify_options *o, const lc_scene *scene, lc_error *err)
+{
+    const char *name = lc_scene_description(scene)->name;
+    lc_error why = {""};
+    if (o->estimator || (o->check && strcmp(o->check, "povray") != 0) || (o->scene && strcmp(o->scene, name) != 0) ||
+        !lc_povray_excuse(&why, scene))
+        return LC_OK;
+    return lc_report_note(report, "povray", name, why.text, err);
 }
 
 static int is_selected(const lc_verify_options *o, const lc_claim *claim)
@@ -105,10 +122,16 @@ static lc_status judge_all(lc_report *report, lc_session *session, const lc_clai
         if (!row)
             return lc_fail(err, LC_FAULT, "out of memory for the report");
         lc_status status = lc_judge_claim(row, session, &claims->items[i], err);
-        if (status != LC_OK) {
+        if (status != LC_OK)
             --report->count;
-            return status;
+        if (status == LC_BAD_INPUT && !claims->items[i].decide && lc_is_foreign(session, claims->items[i].estimator)) {
+            status = lc_report_note(report, claims->items[i].check->name, lc_scene_description(scene)->name, err->text, err);
+            --selected;
+            if (status == LC_OK)
+                continue;
         }
+        if (status != LC_OK)
+            return status;
         if (o->on_row)
             o->on_row(o->user, row, report->count, selected);
     }
@@ -136,9 +159,11 @@ lc_status lc_verify(lc_report *report, const lc_verify_options *options, lc_load
         status = lc_suite_scene(&scenes[scene_count], lc_suite_scenes[i], options->seed, load, err);
         if (status == LC_OK)
             status = plan_scene(&claims, &report->not_applicable, options, scenes[scene_count++], err);
+        if (status == LC_OK)
+            status = collect_excuse(report, options, scenes[scene_count - 1], err);
     }
     if (status == LC_OK) {
-        keep_suite(&claims, options->suite);
+        keep_suite(&claims, options->suite, options->renderer);
         session.rows = claims.count;
         lc_budget budget = {options->false_fail, options->false_pass, session.rows, 3, LC_MOST_LOOKS};
         lc_budget_text(report->budget, sizeof report->budget, &budget, 64, 64);

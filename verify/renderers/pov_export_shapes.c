@@ -51,6 +51,14 @@ static lc_status check_glass(const lc_pov_writer *w, const lc_shape_desc *shape,
     return LC_OK;
 }
 
+static int is_lit_by_sky_alone(const lc_scene_desc *desc)
+{
+    int lamps = desc->point_count + desc->directional_count;
+    for (int i = 0; i < desc->shape_count; ++i)
+        lamps += desc->shapes[i].emits && !texture_is_black(&desc->shapes[i].radiance);
+    return desc->has_sky && lamps == 0;
+}
+
 static lc_status check_shape(const lc_pov_writer *w, const lc_shape_desc *shape, lc_error *err)
 {
     const lc_material_desc *m = material_of(w, shape);
@@ -66,7 +74,9 @@ static lc_status check_shape(const lc_pov_writer *w, const lc_shape_desc *shape,
         return refuse(w, shape, "it moves: POV-Ray knows motion from frame to frame only", err);
     if (glossy)
         return refuse(w, shape, "POV-Ray's reflections are sharp: it has no rough mirror", err);
-    if ((specular || glass) && w->options->mode != LC_POV_SPECULAR)
+    /* Rays that gather the light of a sky are reflected like any others; one bounce leaves nothing to count. */
+    int gathers_all = w->options->mode == LC_POV_RADIOSITY && w->options->bounces == 1 && is_lit_by_sky_alone(w->desc);
+    if ((glass || (specular && !gathers_all)) && w->options->mode != LC_POV_SPECULAR)
         return refuse(w, shape,
                       "POV-Ray's lights reach no surface off a mirror or through glass: mode specular, for scenes "
                       "without diffuse surfaces",
@@ -76,8 +86,8 @@ static lc_status check_shape(const lc_pov_writer *w, const lc_shape_desc *shape,
                       err);
     if (checkered && shape->kind != LC_RECTANGLE)
         return refuse(w, shape, "a checkerboard has POV-Ray's pigment on rectangles only", err);
-    if (shape->emits && shape->radiance.is_checkerboard)
-        return refuse(w, shape, "a checkerboard of radiance is no lamp of POV-Ray's: cut it into rectangles", err);
+    if (shape->emits && shape->radiance.is_checkerboard && (shape->kind != LC_RECTANGLE || w->options->emission))
+        return refuse(w, shape, "a glowing checkerboard is many lamps: on rectangles only, and not seen by the camera", err);
     return glass ? check_glass(w, shape, err) : LC_OK;
 }
 

@@ -66,6 +66,10 @@ void lc_report_text(FILE *out, const lc_report *report)
             print_trouble(out, row);
         ++counts[row->verdict];
     }
+    for (int i = 0; i < report->note_count; ++i) {
+        const lc_note *n = &report->notes[i];
+        fprintf(out, "%s%-10s %-18s no row: %s\n", i ? "" : "\n", n->check, n->scene, n->reason);
+    }
     fprintf(out, "\nestimate: mean of reflected light / what is expected, in the hardest of three channels; PASS: "
                  "shown within 1 +- margin.\n");
     fprintf(out, "%s", report->budget);

@@ -110,7 +110,7 @@ static const struct {
     {HEAD "<shape type=\"sphere\"><bsdf type=\"diffuse\">" CHECKER("reflectance") "</bsdf></shape></scene>",
      LC_POV_DIRECT, "rectangles only"},
     {HEAD "<shape type=\"rectangle\"><emitter type=\"area\">" CHECKER("radiance") "</emitter></shape></scene>",
-     LC_POV_DIRECT, "cut it"},
+     LC_POV_DIRECT, "many lamps"},
 };
 
 START_TEST(what_cannot_be_expressed_is_refused_with_the_reason)
@@ -449,6 +449,8 @@ static void brighten_sun(lc_scene_desc *desc)
     desc->directionals[0].irradiance = lc_rgb_scale(1.01, desc->directionals[0].irradiance);
 }
 
+static void brighten_sky(lc_scene_desc *desc) { desc->sky = lc_rgb_scale(1.01, desc->sky); }
+
 /* By 2% of the Cornell box's 2 m. */
 static void move_box(lc_scene_desc *desc)
 {
@@ -482,6 +484,9 @@ static const struct {
     {"mirror_corridor", "mirror", NULL, LC_ROW_PASS},
     {"mirror_corridor", "mirror", brighten_lamp, LC_ROW_FAIL},
     {"glass_slab", "dielectric", brighten_lamp, LC_ROW_FAIL},
+    {"textured_lamp", "light_direct", NULL, LC_ROW_PASS},
+    {"textured_lamp", "light_direct", brighten_lamp, LC_ROW_FAIL},
+    {"sky", "hemisphere_direct", brighten_sky, LC_ROW_FAIL},
     {"bright_room", "path", brighten_room, LC_ROW_FAIL},
 };
 

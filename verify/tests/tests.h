@@ -13,6 +13,8 @@ void lc_test_restore_root(uid_t before);
 
 Suite *lc_suite_affine(void);
 Suite *lc_suite_scene_read(void);
+Suite *lc_suite_scene_write(void);
+Suite *lc_suite_adapter(void);
 Suite *lc_suite_status(void);
 Suite *lc_suite_film(void);
 Suite *lc_suite_analytic(void);
