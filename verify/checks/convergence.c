@@ -283,7 +283,7 @@ static lc_status plan(const lc_check *self, lc_claims *claims, const lc_scene *s
         claim->tolerance = 1e-5;
         claim->decide = decide_slope;
         claim->relation = "slope";
-        claim->full_only = row->bounces > 1 && estimator->lobes != LC_DIFFUSE;
+        claim->full_only = row->bounces > 1;
         claim->source = row->source;
     }
     return LC_OK;

@@ -270,11 +270,11 @@ START_TEST(test_each_variant_has_a_row)
 }
 END_TEST
 
-/* At four times the margin, as for the origins above. */
+/* At four times the margin, as for the origins above; twice, where rare long paths want more samples than those of that margin. */
 START_TEST(test_variant_passes)
 {
     lc_report report;
-    run(&report, lc_variants[_i], &variant_rows[_i], 0.02);
+    run(&report, lc_variants[_i], &variant_rows[_i], strcmp(variant_rows[_i].mutant, "path_half_survive") ? 0.02 : 0.01);
     ck_assert_int_gt(report.count, 0);
     for (int i = 0; i < report.count; ++i)
         ck_assert_msg(report.rows[i].verdict == LC_ROW_PASS, "%s is accused: %s", lc_variants[_i]->name,
