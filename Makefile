@@ -53,7 +53,7 @@ ALL_CFLAGS := $(WARN) $(CFLAGS) -ffp-contract=off -D_POSIX_C_SOURCE=200809L -I. 
 ALL_LIBS   := $(NEEDS_LIBS) -lm -pthread
 
 DIRS := src/core src/io estimators verify/stats verify/analytic verify/renderers verify/judge verify/checks \
-        verify/mutants verify/report verify/grade
+        verify/mutants verify/diagnose verify/report verify/grade
 LIB  := $(BUILD)/obj/texts.o $(patsubst %.c,$(BUILD)/obj/%.o,$(filter-out estimators/template.c,$(wildcard $(DIRS:%=%/*.c))))
 CLI  := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard src/cli/*.c))
 TEST := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard verify/tests/*.c))
@@ -62,7 +62,8 @@ WORKER := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard src/core/*.c verify/grade/w
 # The proofs of the judge: programs of their own, two of whose files have a main.
 PROOF := $(patsubst %.c,$(BUILD)/obj/%.o,$(filter-out %/calibrate.c %/power.c,$(wildcard verify/proof/*.c)))
 
-.PHONY: all check verify verify-table full-table pictures povray-reference lint asan-check calibrate power judge-mutants bench needs fresh clean help
+.PHONY: all check verify verify-table full-table pictures povray-reference mitsuba-table renderer-study lint asan-check \
+        calibrate power judge-mutants mutants bench needs fresh clean help
 all: $(BUILD)/lightcheck $(BUILD)/lightcheck-worker $(BUILD)/obj/estimators/template.o ## build the program
 
 # A plug-in finds the functions of lightcheck.h in the program, and no others.
@@ -132,6 +133,12 @@ check: all $(BUILD)/tests ## run the unit and command-line tests, and the exampl
 povray-reference: all ## render the references of the povray check anew (needs POV-Ray, takes minutes)
 	$(BUILD)/lightcheck reference
 
+mitsuba-table: all ## every scene against Mitsuba 3: results/mitsuba.md (needs `pip install mitsuba numpy`; PYTHON=interpreter)
+	$(or $(PYTHON),python3) verify/renderers/mitsuba_table.py -o results/mitsuba.md
+
+renderer-study: all ## what the suite finds in Mitsuba 3 and POV-Ray: results/renderers.md (needs both; PYTHON=interpreter)
+	$(or $(PYTHON),python3) verify/renderers/study.py -o results/renderers.md
+
 asan-check: ## the same under the address and undefined-behaviour sanitizers
 	$(MAKE) BUILD=$(BUILD)/asan SANITIZE=address,undefined CFLAGS='-O1 -g' check
 
@@ -150,6 +157,10 @@ judge-mutants: ## wrong judges, each of which the tests must catch
 
 bench: all ## how fast the tracer is on this machine: paths a second of one core
 	@sh verify/tests/bench.sh $(BUILD)/lightcheck
+
+mutants: all ## which checks kill which mutants, and that right variants pass: results/mutants.md
+	@sh verify/tests/mutants.sh $(BUILD)/lightcheck quick > $(BUILD)/mutants.md; status=$$?; \
+	    cp $(BUILD)/mutants.md results/mutants.md; exit $$status
 
 needs: ## say what is missing, if anything is
 	@:

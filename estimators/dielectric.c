@@ -27,8 +27,8 @@ static lc_rgb refract_or_reflect(const lc_hit *hit, double ior, double weight, l
 static lc_rgb scatter(const lc_scene *scene, const lc_hit *hit, lc_sampler *sampler, lc_vec3 *wi)
 {
     lc_material material = lc_material_at(scene, hit);
-    double mirror = lc_rgb_max(material.mirror), diffuse = lc_rgb_max(material.diffuse);
-    double total = mirror + diffuse + material.glass;
+    double mirror = lc_rgb_max(material.mirror), finite = lc_rgb_max(material.diffuse) + lc_rgb_max(material.glossy);
+    double total = mirror + finite + material.glass;
     if (total == 0)
         return lc_black();
     double choice = lc_next(sampler) * total;
@@ -42,7 +42,7 @@ static lc_rgb scatter(const lc_scene *scene, const lc_hit *hit, lc_sampler *samp
     double u = lc_next(sampler), v = lc_next(sampler);
     *wi = lc_uniform_hemisphere(n, u, v);
     double cos_surface = lc_dot(n, *wi), pdf_solid = 0.5 * LC_INV_PI;
-    return lc_rgb_scale(cos_surface / pdf_solid * total / diffuse, lc_bsdf_eval(scene, hit, *wi));
+    return lc_rgb_scale(cos_surface / pdf_solid * total / finite, lc_bsdf_eval(scene, hit, *wi));
 }
 
 static lc_rgb radiance(const lc_scene *scene, const lc_ray *ray, const lc_hit *first, const lc_options *options,
@@ -69,7 +69,7 @@ LC_ESTIMATOR(dielectric) = {
     "dielectric",
     "mirror, which also goes through glass",
     "Path Tracing (Bikker 2021-22), dielectrics; Veach 1997, section 5.2",
-    LC_DIFFUSE | LC_MIRROR | LC_GLASS,
+    LC_DIFFUSE | LC_GLOSSY | LC_MIRROR | LC_GLASS,
     LC_AREA | LC_SKY,
     LC_UNBOUNDED,
     radiance,

@@ -39,7 +39,7 @@ LC_ESTIMATOR(hemisphere_direct) = {
     "hemisphere_direct",
     "direct light by uniform directions over the hemisphere",
     "Path Tracing (Bikker 2021-22), direct light, method 1; Kajiya 1986, eq. 1 in hemispherical form",
-    LC_DIFFUSE,
+    LC_DIFFUSE | LC_GLOSSY,
     LC_AREA | LC_SKY,
     1,
     radiance,

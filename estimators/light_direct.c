@@ -53,7 +53,7 @@ LC_ESTIMATOR(light_direct) = {
     "light_direct",
     "direct light by sampling lights, one chosen uniformly (solid-angle form)",
     "Path Tracing (Bikker 2021-22), direct light, method 2; Shirley, Wang, Zimmerman 1996, eq. 6",
-    LC_DIFFUSE,
+    LC_DIFFUSE | LC_GLOSSY,
     LC_AREA | LC_POINT | LC_DIRECTIONAL,
     1,
     radiance,

@@ -5,7 +5,8 @@
  * Integral:   as path, with the BSDF f + r(wo) delta(wi - reflected wo) / cos_surface: the mirror's share of the integral is r L(reflected),
  *             without a cosine.
  * Estimator:  a particle must choose. With probability q it takes the mirror: throughput r / q; else a uniform direction: throughput
- *             f cos_surface / (pdf_solid (1 - q)). Any 0 < q < 1 is right; q = max(r) / (max(r) + max(albedo)) wastes little.
+ *             f cos_surface / (pdf_solid (1 - q)). Any 0 < q < 1 is right; q = max(r) / (max(r) + max(albedo)) wastes little. A rough
+ *             mirror has a value f everywhere, and counts with the albedo.
  * Source:     "Path Tracing" (Bikker, INFOMAGR 2021-22), red mirrors and half-reflective materials; Kajiya 1986
  * Language:   L (D|R){0,B} E. Omits glass, and lights without area.
  */
@@ -15,10 +16,10 @@
 static lc_rgb scatter(const lc_scene *scene, const lc_hit *hit, lc_sampler *sampler, lc_vec3 *wi)
 {
     lc_material material = lc_material_at(scene, hit);
-    double mirror = lc_rgb_max(material.mirror), diffuse = lc_rgb_max(material.diffuse);
-    if (mirror + diffuse == 0)
+    double mirror = lc_rgb_max(material.mirror), finite = lc_rgb_max(material.diffuse) + lc_rgb_max(material.glossy);
+    if (mirror + finite == 0)
         return lc_black();
-    double q = mirror / (mirror + diffuse);
+    double q = mirror / (mirror + finite);
     if (lc_next(sampler) < q) {
         *wi = lc_reflect(hit->wo, hit->n);
         return lc_rgb_scale(1 / q, material.mirror);
@@ -54,7 +55,7 @@ LC_ESTIMATOR(mirror) = {
     "mirror",
     "path, which also follows mirrors: tinted, and half-reflective by a random choice",
     "Path Tracing (Bikker 2021-22), red mirrors and half-reflective materials; Kajiya 1986",
-    LC_DIFFUSE | LC_MIRROR,
+    LC_DIFFUSE | LC_GLOSSY | LC_MIRROR,
     LC_AREA | LC_SKY,
     LC_UNBOUNDED,
     radiance,

@@ -39,7 +39,7 @@ LC_ESTIMATOR(path) = {
     "path",
     "path tracing by uniform directions over the hemisphere",
     "Kajiya 1986; Path Tracing (Bikker 2021-22), the path tracing algorithm",
-    LC_DIFFUSE,
+    LC_DIFFUSE | LC_GLOSSY,
     LC_AREA | LC_SKY,
     LC_UNBOUNDED,
     radiance,

@@ -11,8 +11,18 @@
     X(light_direct) \
     X(three_point)       \
     X(path)              \
+    X(path_cosine) \
+    X(path_nee) \
+    X(path_mis) \
+    X(path_mis_power) \
+    X(path_rr) \
+    X(path_analog) \
     X(mirror)            \
-    X(dielectric)
+    X(dielectric)        \
+    X(glossy_direct) \
+    X(path_full) \
+    X(direct_mis) \
+    X(light_solid_angle)
 
 #define DECLARE(id) extern const lc_estimator lc_estimator_##id;
 #define MEMBER(id) &lc_estimator_##id,

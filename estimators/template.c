@@ -24,7 +24,7 @@ LC_ESTIMATOR(template) = {
     "template", /* name on the command line */
     "emitted light only: a place to start",
     "your source: paper or lecture, and equation",
-    0, /* lobes: LC_DIFFUSE | LC_MIRROR | LC_GLASS */
+    0, /* lobes: LC_DIFFUSE | LC_GLOSSY | LC_MIRROR | LC_GLASS */
     0, /* emitters: LC_AREA | LC_POINT | LC_DIRECTIONAL | LC_SKY */
     0, /* max_bounces */
     radiance,

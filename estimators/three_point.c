@@ -48,7 +48,7 @@ LC_ESTIMATOR(three_point) = {
     "three_point",
     "direct light in the three-point (area) form, uniform over all emitting area",
     "Kajiya 1986, eq. 1; Path Tracing (Bikker 2021-22), three-point form",
-    LC_DIFFUSE,
+    LC_DIFFUSE | LC_GLOSSY,
     LC_AREA,
     1,
     radiance,

@@ -37,9 +37,14 @@ lc_status lc_cli_find_estimator(const lc_estimator **out, const char *name, lc_e
             *out = *e;
             return LC_OK;
         }
-    for (const lc_mutant *m = lc_mutants; m->estimator; ++m)
-        if (strcmp(m->estimator->name, name) == 0) {
-            *out = m->estimator;
+    const lc_mutant *mutant = lc_mutant_find(name);
+    if (mutant) {
+        *out = mutant->estimator;
+        return LC_OK;
+    }
+    for (const lc_estimator *const *e = lc_variants; *e; ++e)
+        if (strcmp((*e)->name, name) == 0) {
+            *out = *e;
             return LC_OK;
         }
     char list[512] = "";

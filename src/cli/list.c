@@ -10,7 +10,7 @@
 #include "verify/checks/checks.h"
 #include "verify/mutants/registry.h"
 
-#define EXPECTED "expected one of: estimators, scenes, checks, mutants"
+#define EXPECTED "expected one of: estimators, scenes, checks, mutants, variants"
 
 /* One item of a list; `detail` is what --json adds under "source". */
 typedef void item_fn(json_t *array, const char *name, const char *summary, const char *source);
@@ -49,8 +49,15 @@ static void list_checks(item_fn *item, json_t *array)
 
 static void list_mutants(item_fn *item, json_t *array)
 {
-    for (const lc_mutant *m = lc_mutants; m->estimator; ++m)
+    const lc_mutant *m;
+    for (int i = 0; (m = lc_mutant_at(i)) != NULL; ++i)
         item(array, m->estimator->name, m->estimator->summary, m->of);
+}
+
+static void list_variants(item_fn *item, json_t *array)
+{
+    for (const lc_estimator *const *e = lc_variants; *e; ++e)
+        item(array, (*e)->name, (*e)->summary, (*e)->source);
 }
 
 static lc_status list_scenes(item_fn *item, json_t *array, lc_error *err)
@@ -79,6 +86,8 @@ static lc_status list(void *user, const lc_strings *rest, lc_error *err)
         list_checks(item, array);
     else if (strcmp(what, "mutants") == 0)
         list_mutants(item, array);
+    else if (strcmp(what, "variants") == 0)
+        list_variants(item, array);
     else if (strcmp(what, "scenes") == 0)
         status = list_scenes(item, array, err);
     else
@@ -100,5 +109,5 @@ static int run(const lc_command *self, int argc, char **argv)
 }
 
 const lc_command lc_command_list = {
-    "list", "estimators|scenes|checks|mutants [--json]", "what there is: one item a line, the name first", NULL, run,
+    "list", "estimators|scenes|checks|mutants|variants [--json]", "what there is: one item a line, the name first", NULL, run,
 };

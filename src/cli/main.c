@@ -8,10 +8,12 @@
 
 #include "cli/commands.h"
 #include "io/outfile.h"
+#include "verify/renderers/program.h"
 
 static const lc_command *const commands[] = {
     &lc_command_list,  &lc_command_render, &lc_command_sample, &lc_command_compare,
-    &lc_command_merge, &lc_command_verify, &lc_command_export, &lc_command_reference, &lc_command_new,
+    &lc_command_merge, &lc_command_verify, &lc_command_export, &lc_command_reference, &lc_command_diagnose,
+    &lc_command_new,
 };
 enum { COUNT = sizeof commands / sizeof commands[0] };
 
@@ -28,6 +30,7 @@ static void print_usage(FILE *out)
 /* Ended from outside: nothing half-written stays, and whoever waits sees the signal. */
 static void end(int number)
 {
+    lc_program_end();
     lc_outfile_unlink_all();
     signal(number, SIG_DFL);
     raise(number);

@@ -12,8 +12,8 @@
 #include "verify/judge/judge.h"
 
 typedef struct verify_arguments {
-    const char *suite, *estimator, *check, *scene, *seed, *format, *report;
-    double margin, budget;
+    const char *suite, *estimator, *check, *scene, *seed, *format, *report, *renderer;
+    double margin, budget, seconds;
     int threads, measure, jail;
 } verify_arguments;
 
@@ -105,8 +105,8 @@ static void print_line(void *user, const char *text)
 }
 
 /* The estimator under test: a name, a file in the open, or a file in a jail. */
-static lc_status open_estimator(lc_verify_options *options, lc_jail **jail, lc_film_source *source,
-                                char *given, size_t size, const verify_arguments *a, lc_error *err)
+static lc_status open_estimator(lc_verify_options *options, lc_jail **jail, char *given, size_t size,
+                                const verify_arguments *a, lc_error *err)
 {
     *jail = NULL;
     if (a->jail && (!a->estimator || !lc_is_source(a->estimator)))
@@ -117,8 +117,6 @@ static lc_status open_estimator(lc_verify_options *options, lc_jail **jail, lc_f
     if (status != LC_OK)
         return status;
     fputs(lc_jail_messages(*jail), stderr);
-    *source = lc_jail_source(*jail);
-    options->source = source;
     options->estimator = lc_jail_estimator(*jail);
     snprintf(given, size, "%s --jail", a->estimator);
     options->given = given;
@@ -146,11 +144,9 @@ static lc_status verify(void *user, const lc_strings *rest, lc_error *err)
         return lc_fail(err, LC_BAD_INPUT, "unexpected argument '%s'", rest->items[0]);
     lc_verify_options options;
     lc_report report;
+    lc_adapter adapter;
     lc_jail *jail = NULL;
-    lc_film_source source;
     char given[200];
-    if (a->measure)
-        return lc_measure_cells(load_scene, print_line, NULL, err);
     lc_verify_options_init(&options);
     options.suite = lc_suite_find(a->suite);
     options.margin = a->margin;
@@ -163,13 +159,24 @@ static lc_status verify(void *user, const lc_strings *rest, lc_error *err)
     lc_status status = check_names(a, err);
     if (status == LC_OK)
         status = read_seed(&options.seed, a->seed, err);
+    if (status == LC_OK && a->renderer && a->estimator)
+        status = lc_fail(err, LC_BAD_INPUT, "--renderer and -e: one or the other is put to the test");
     if (status == LC_OK)
-        status = open_estimator(&options, &jail, &source, given, sizeof given, a, err);
+        status = open_estimator(&options, &jail, given, sizeof given, a, err);
+    if (status == LC_OK && a->renderer)
+        status = lc_adapter_open(&adapter, a->renderer, a->seconds, err);
+    if (status == LC_OK && a->renderer) {
+        options.renderer = &adapter;
+        options.estimator = &adapter.estimator;
+    }
     if (status != LC_OK)
         return status;
+    if (a->measure)
+        return lc_measure_cells(load_scene, options.estimator, a->scene, print_line, NULL, err);
     status = lc_verify(&report, &options, load_scene, err);
     if (status == LC_OK && report.count == 0)
-        status = lc_fail(err, LC_BAD_INPUT, "nothing to verify: no check applies to what was selected");
+        status = report.note_count ? lc_fail(err, LC_BAD_INPUT, "nothing to verify: %s", report.notes[0].reason)
+                                   : lc_fail(err, LC_BAD_INPUT, "nothing to verify: no check applies to what was selected");
     if (status == LC_OK)
         status = write_report(&report, a, err);
     if (status == LC_OK && jail)
@@ -183,13 +190,16 @@ static lc_status verify(void *user, const lc_strings *rest, lc_error *err)
 
 static int run(const lc_command *self, int argc, char **argv)
 {
-    verify_arguments a = {.suite = "quick", .seed = "1", .format = "text", .budget = 1e-6};
+    verify_arguments a = {.suite = "quick", .seed = "1", .format = "text", .budget = 1e-6, .seconds = 600};
     const lc_option options[] = {
         {0, "suite", LC_OPT_CHOICE, &a.suite, "quick|full", "margins 0.5% or 0.25% times max(1, c); default quick", 0,
          0, "quick|full"},
         {'e', "estimator", LC_OPT_STRING, &a.estimator, "NAME|FILE.c",
          "only this estimator, a mutant, or a file of your own", 0, 0, NULL},
         {0, "jail", LC_OPT_FLAG, &a.jail, NULL, "runs FILE.c locked up: for code that you do not trust", 0, 0, NULL},
+        {0, "renderer", LC_OPT_STRING, &a.renderer, "ADAPTER",
+         "only this program: ADAPTER scene.xml W H SPP SEED BOUNCES OUT.exr", 0, 0, NULL},
+        {0, "seconds", LC_OPT_NUMBER, &a.seconds, "S", "that one call of ADAPTER may take; default 600", 0.1, 1e6, NULL},
         {'c', "check", LC_OPT_STRING, &a.check, "CHECK", "only this kind (see `lightcheck list checks`)", 0, 0, NULL},
         {0, "scene", LC_OPT_STRING, &a.scene, "SCENE", "only this scene of the suite", 0, 0, NULL},
         {0, "margin", LC_OPT_NUMBER, &a.margin, "M", "relative, for estimators with c <= 1; default: the suite's", 0, 1,

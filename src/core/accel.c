@@ -12,6 +12,7 @@
  *    let rays out of the corners of a closed room. Tests count self-hits and leaks.
  */
 #include "core/accel_c.h"
+#include "core/round_c.h"
 
 /* A packet of n rays, as Embree lays it out: field k of ray i is element k n + i (a single ray is a packet of one). */
 typedef union field {
@@ -21,56 +22,16 @@ typedef union field {
 enum { T_FAR = 8, ID = 10, PRIM_ID = 17, GEOM_ID = 18 }; /* of an RTCRayHitN */
 
 /* Nearest t in (0, t_max) where the ray meets the round part, or -1. */
-static double meet_sphere(const lc_round *sphere, const query *q, int is_from, int is_to)
-{
-    lc_vec3 oc = lc_sub(q->o, sphere->o);
-    double b = lc_dot(oc, q->d);
-    double root[2]; /* in increasing order */
-    if (is_from) {  /* one root is 0 and does not count */
-        root[0] = -1.0;
-        root[1] = -2.0 * b;
-    } else {
-        double r = sphere->radius;
-        lc_vec3 l = lc_sub(oc, lc_scale(b, q->d)); /* from the center to the ray's nearest point */
-        double discriminant = r * r - lc_dot(l, l);
-        if (discriminant < 0)
-            return -1.0;
-        double far = -b - copysign(sqrt(discriminant), b);
-        double near = far != 0 ? (lc_dot(oc, oc) - r * r) / far : 0.0;
-        root[0] = near < far ? near : far;
-        root[1] = near < far ? far : near;
-    }
-    if (is_to) { /* one root is t_max and does not count */
-        int end = fabs(root[0] - q->t_max) < fabs(root[1] - q->t_max) ? 0 : 1;
-        root[end] = -1.0;
-    }
-    for (int i = 0; i < 2; ++i)
-        if (root[i] > 0 && root[i] < q->t_max)
-            return root[i];
-    return -1.0;
-}
-
-static double meet_disk(const lc_round *disk, const query *q, int is_end)
-{
-    if (is_end)
-        return -1.0;
-    double cos_theta = lc_dot(disk->n, q->d);
-    if (cos_theta == 0)
-        return -1.0;
-    double t = lc_dot(disk->n, lc_sub(disk->o, q->o)) / cos_theta;
-    if (!(t > 0 && t < q->t_max))
-        return -1.0;
-    lc_vec3 r = lc_sub(lc_add(q->o, lc_scale(t, q->d)), disk->o);
-    double u = lc_dot(disk->du, r), v = lc_dot(disk->dv, r);
-    return u * u + v * v <= 1.0 ? t : -1.0;
-}
-
 static double meet(const query *q, int part)
 {
     const lc_round *round = &q->accel->rounds[part];
-    if (round->is_sphere)
-        return meet_sphere(round, q, part == q->from, part == q->to);
-    return meet_disk(round, q, part == q->from || part == q->to);
+    lc_round moved;
+    if (q->accel->moves) {
+        moved = *round;
+        moved.o = lc_add(round->o, lc_scale(q->time, round->motion));
+        round = &moved;
+    }
+    return meet_round(round, q->o, q->d, q->t_max, part == q->from, part == q->to);
 }
 
 void lc_accel_round_intersect(const struct RTCIntersectFunctionNArguments *args)
@@ -102,7 +63,8 @@ void lc_accel_round_occluded(const struct RTCOccludedFunctionNArguments *args)
 
 /* ---- queries -------------------------------------------------------------------------------------------- */
 
-static void start_query(query *q, const lc_accel *accel, lc_vec3 o, lc_vec3 d, double t_max, int from_part, int to_part)
+static void start_query(query *q, const lc_accel *accel, lc_vec3 o, lc_vec3 d, double t_max, double time, int from_part,
+                        int to_part)
 {
 #if LC_EMBREE == 4
     rtcInitRayQueryContext(&q->base);
@@ -115,6 +77,7 @@ static void start_query(query *q, const lc_accel *accel, lc_vec3 o, lc_vec3 d, d
     q->o = o;
     q->d = d;
     q->t_max = t_max;
+    q->time = time;
     q->from = from_part >= accel->face_count ? from_part - accel->face_count : -1;
     q->to = to_part >= accel->face_count ? to_part - accel->face_count : -1;
     q->hit = -1;
@@ -122,13 +85,16 @@ static void start_query(query *q, const lc_accel *accel, lc_vec3 o, lc_vec3 d, d
 }
 
 /* Where Embree's ray starts (or ends) instead of at `p` [unit space] on the part: off a face, towards `to`, and not at its very edge. */
-static lc_vec3 off_face(const lc_accel *accel, const lc_scene *scene, lc_vec3 p, int part, lc_vec3 to, double extra)
+static lc_vec3 off_face(const lc_accel *accel, const lc_scene *scene, lc_vec3 p, double time, int part, lc_vec3 to,
+                        double extra)
 {
     if (part < 0 || part >= accel->face_count)
         return p;
     const face_start *start = &accel->starts[part];
     const lc_face *face = &scene->faces[part];
     lc_vec3 r = lc_sub(p, to_unit(accel, face->o)); /* du, dv and eu, ev are in world space: the scales cancel */
+    if (scene->moves)
+        r = lc_sub(r, lc_scale(accel->scale, lc_shape_shift(scene, face->shape, time)));
     double u = lc_dot(face->du, r), v = lc_dot(face->dv, r), most_u = start->u * accel->scale,
            most_v = start->v * accel->scale;
     if (fabs(u) > most_u)
@@ -205,20 +171,25 @@ static int enter(lc_vec3 *start, double *skipped, lc_vec3 d)
 }
 
 /* From Embree's answer to the hit; q is not looked at unless a round part was hit. */
-static int finish(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, lc_vec3 d, unsigned geometry,
+static int finish(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, lc_vec3 d, double time, unsigned geometry,
                   unsigned primitive, const query *q, double skipped, lc_hit *hit)
 {
-    if (geometry == FACES) {
-        hit->part = (int)primitive;
-        finish_face(&scene->faces[hit->part], o, d, hit);
-        return 1;
+    int is_face = geometry == FACES;
+    if (!is_face && geometry != ROUNDS)
+        return 0;
+    lc_vec3 rest = o, shift = lc_vec(0, 0, 0); /* where the ray is when the shape is moved back to time 0 */
+    hit->part = is_face ? (int)primitive : accel->face_count + q->hit;
+    if (scene->moves) {
+        shift = lc_shape_shift(scene, is_face ? scene->faces[hit->part].shape : scene->rounds[q->hit].shape, time);
+        rest = lc_sub(o, shift);
     }
-    if (geometry == ROUNDS) {
-        hit->part = accel->face_count + q->hit;
-        finish_round(&scene->rounds[q->hit], o, d, (q->t + skipped) / accel->scale, hit);
-        return 1;
-    }
-    return 0;
+    if (is_face)
+        finish_face(&scene->faces[hit->part], rest, d, hit);
+    else
+        finish_round(&scene->rounds[q->hit], rest, d, (q->t + skipped) / accel->scale, hit);
+    if (scene->moves)
+        hit->p = lc_add(hit->p, shift);
+    return 1;
 }
 
 int lc_accel_intersect(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, lc_vec3 d, double time, int from_part,
@@ -229,9 +200,9 @@ int lc_accel_intersect(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, 
     if (from_part < 0 && !enter(&start, &skipped, d))
         return 0;
     query q;
-    start_query(&q, accel, start, d, INFINITY, from_part, -1);
+    start_query(&q, accel, start, d, INFINITY, time, from_part, -1);
     struct RTCRayHit rayhit;
-    fill_ray(&rayhit.ray, off_face(accel, scene, start, from_part, d, 0.0), d, INFINITY, time);
+    fill_ray(&rayhit.ray, off_face(accel, scene, start, time, from_part, d, 0.0), d, INFINITY, time);
     rayhit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     rayhit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
 #if LC_EMBREE == 4
@@ -242,7 +213,7 @@ int lc_accel_intersect(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, 
 #else
     rtcIntersect1(accel->scene, &q.base, &rayhit);
 #endif
-    return finish(accel, scene, o, d, rayhit.hit.geomID, rayhit.hit.primID, &q, skipped, hit);
+    return finish(accel, scene, o, d, time, rayhit.hit.geomID, rayhit.hit.primID, &q, skipped, hit);
 }
 
 /* The rays of one pixel meet the same few faces: told so, Embree walks its tree once for all of them. */
@@ -294,13 +265,13 @@ void lc_accel_intersect_packet(const lc_accel *accel, const lc_scene *scene, con
         lc_vec3 start = to_unit(accel, ray->o);
         valid[i] = enter(&start, &skipped[i], ray->d) ? -1 : 0;
         fill_packet(&rayhit, i, start, ray->d, ray->time);
-        start_query(&q[i], accel, start, ray->d, INFINITY, -1, -1);
+        start_query(&q[i], accel, start, ray->d, INFINITY, ray->time, -1, -1);
     }
     if (!accel->has_packets)
         return;
     trace_packet(accel, valid, &rayhit, q);
     for (int i = 0; i < LC_PACKET; ++i)
-        hits[i].valid = finish(accel, scene, rays[i].o, rays[i].d, rayhit.hit.geomID[i], rayhit.hit.primID[i], &q[i],
+        hits[i].valid = finish(accel, scene, rays[i].o, rays[i].d, rays[i].time, rayhit.hit.geomID[i], rayhit.hit.primID[i], &q[i],
                                skipped[i], &hits[i]);
 }
 
@@ -311,20 +282,20 @@ int lc_accel_occluded(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, i
     struct RTCRay ray;
     lc_vec3 a = to_unit(accel, o);
     if (to_infinity) {
-        start_query(&q, accel, a, target, INFINITY, from_part, -1);
-        fill_ray(&ray, off_face(accel, scene, a, from_part, target, 0.0), target, INFINITY, time);
+        start_query(&q, accel, a, target, INFINITY, time, from_part, -1);
+        fill_ray(&ray, off_face(accel, scene, a, time, from_part, target, 0.0), target, INFINITY, time);
     } else {
         lc_vec3 b = to_unit(accel, target), along = lc_sub(b, a);
         double length = accel->round_count ? lc_length(along) : 1.0;
         if (!(lc_dot(along, along) > 0))
             return 0;
-        start_query(&q, accel, a, lc_scale(1.0 / length, along), length, from_part, to_part);
+        start_query(&q, accel, a, lc_scale(1.0 / length, along), length, time, from_part, to_part);
         /* Embree reaches the end as o + d, each rounded: that, too, must stay on the near side of the light. */
         double rounding = 2 * 0x1p-24 *
                           (fabs(to_n.x) * (fabs(a.x) + fabs(along.x)) + fabs(to_n.y) * (fabs(a.y) + fabs(along.y)) +
                            fabs(to_n.z) * (fabs(a.z) + fabs(along.z)));
-        lc_vec3 start = off_face(accel, scene, a, from_part, along, 0.0);
-        lc_vec3 end = off_face(accel, scene, b, to_part, lc_neg(along), rounding);
+        lc_vec3 start = off_face(accel, scene, a, time, from_part, along, 0.0);
+        lc_vec3 end = off_face(accel, scene, b, time, to_part, lc_neg(along), rounding);
         fill_ray(&ray, start, lc_sub(end, start), 1.0, time);
     }
 #if LC_EMBREE == 4

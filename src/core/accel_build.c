@@ -15,7 +15,8 @@ static void round_bounds(const struct RTCBoundsFunctionArguments *args)
 {
     const lc_round *round = &((const lc_accel *)args->geometryUserPtr)->rounds[args->primID];
     double lower[3], upper[3];
-    const double o[3] = {round->o.x, round->o.y, round->o.z};
+    lc_vec3 at = lc_add(round->o, lc_scale(args->timeStep, round->motion));
+    const double o[3] = {at.x, at.y, at.z};
     const double eu[3] = {round->eu.x, round->eu.y, round->eu.z}, ev[3] = {round->ev.x, round->ev.y, round->ev.z};
     for (int i = 0; i < 3; ++i) {
         double extent = round->is_sphere ? round->radius : hypot(eu[i], ev[i]);
@@ -51,8 +52,11 @@ static void find_unit_space(lc_accel *accel, const lc_scene *scene)
 {
     double lower[3] = {DBL_MAX, DBL_MAX, DBL_MAX}, upper[3] = {-DBL_MAX, -DBL_MAX, -DBL_MAX};
     for (int f = 0; f < scene->face_count; ++f)
-        for (int i = 0; i < 4; ++i)
-            grow(lower, upper, corner(&scene->faces[f], i));
+        for (int i = 0; i < 4; ++i) {
+            lc_vec3 p = corner(&scene->faces[f], i);
+            grow(lower, upper, p);
+            grow(lower, upper, lc_add(p, lc_shape_shift(scene, scene->faces[f].shape, 1)));
+        }
     for (int r = 0; r < scene->round_count; ++r) {
         const lc_round *round = &scene->rounds[r];
         lc_vec3 e = round->is_sphere ? lc_vec(round->radius, round->radius, round->radius)
@@ -60,6 +64,8 @@ static void find_unit_space(lc_accel *accel, const lc_scene *scene)
                                               hypot(round->eu.z, round->ev.z));
         grow(lower, upper, lc_sub(round->o, e));
         grow(lower, upper, lc_add(round->o, e));
+        grow(lower, upper, lc_add(lc_sub(round->o, e), round->motion));
+        grow(lower, upper, lc_add(lc_add(round->o, e), round->motion));
     }
     accel->center = lc_vec(0, 0, 0);
     accel->scale = 1.0;
@@ -75,39 +81,58 @@ static void find_unit_space(lc_accel *accel, const lc_scene *scene)
 }
 
 /* Bound of what rounding does to a point of the face across a plane whose normal has components of these sizes, in unit space. */
-static double rounding_across(const lc_accel *accel, const lc_face *face, double x, double y, double z)
+static double rounding_across(const lc_accel *accel, const lc_face *face, lc_vec3 motion, double x, double y, double z)
 {
     lc_vec3 o = to_unit(accel, face->o);
     const double weight[3] = {x, y, z}, at[3] = {fabs(o.x), fabs(o.y), fabs(o.z)};
     const double extent[3] = {fabs(face->eu.x) + fabs(face->ev.x), fabs(face->eu.y) + fabs(face->ev.y),
                               fabs(face->eu.z) + fabs(face->ev.z)};
+    const double moved[3] = {fabs(motion.x), fabs(motion.y), fabs(motion.z)}; /* adds to |o|; two roundings more */
     double sum = 0.0;
     for (int i = 0; i < 3; ++i)
-        sum += weight[i] * (at[i] + 3 * accel->scale * extent[i]);
+        sum += weight[i] * (at[i] + 3 * accel->scale * (extent[i] + moved[i]));
     return SAFETY * sum + LEAST_OFFSET;
 }
 
-static face_start find_start(const lc_accel *accel, const lc_face *face)
+static face_start find_start(const lc_accel *accel, const lc_face *face, lc_vec3 motion)
 {
     lc_vec3 n = face->n;
-    double edge = 4 * rounding_across(accel, face, 1, 1, 1) / accel->scale; /* the neighbour may stand at any angle */
+    double edge = 4 * rounding_across(accel, face, motion, 1, 1, 1) / accel->scale; /* the neighbour may stand at any angle */
     face_start start;
-    start.offset = rounding_across(accel, face, fabs(n.x), fabs(n.y), fabs(n.z));
+    start.offset = rounding_across(accel, face, motion, fabs(n.x), fabs(n.y), fabs(n.z));
     start.u = fmax(0.0, 1.0 - edge * lc_length(face->du));
     start.v = fmax(0.0, 1.0 - edge * lc_length(face->dv));
     return start;
+}
+
+/* The faces at time 1; Embree moves them straight and evenly. */
+static void add_last_step(const lc_accel *accel, const lc_scene *scene, RTCGeometry geometry)
+{
+    size_t count = (size_t)scene->face_count;
+    float(*vertices)[3] =
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 1, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 4 * count);
+    for (size_t v = 0; vertices && v < 4 * count; ++v) {
+        const lc_face *face = &scene->faces[v / 4];
+        lc_vec3 p = lc_add(corner(face, (int)(v % 4)), lc_shape_shift(scene, face->shape, 1));
+        p = to_unit(accel, p);
+        vertices[v][0] = (float)p.x;
+        vertices[v][1] = (float)p.y;
+        vertices[v][2] = (float)p.z;
+    }
 }
 
 static void add_faces(lc_accel *accel, const lc_scene *scene)
 {
     RTCGeometry geometry = rtcNewGeometry(accel->device, RTC_GEOMETRY_TYPE_QUAD);
     size_t count = (size_t)scene->face_count;
+    rtcSetGeometryTimeStepCount(geometry, scene->moves ? 2 : 1);
     accel->vertices =
         rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 4 * count);
     accel->quads =
         rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, 4 * sizeof(unsigned), count);
     for (size_t f = 0; accel->vertices && accel->quads && f < count; ++f) {
-        accel->starts[f] = find_start(accel, &scene->faces[f]);
+        lc_vec3 motion = lc_shape_shift(scene, scene->faces[f].shape, 1);
+        accel->starts[f] = find_start(accel, &scene->faces[f], motion);
         for (unsigned i = 0; i < 4; ++i) {
             lc_vec3 p = to_unit(accel, corner(&scene->faces[f], (int)i));
             float *vertex = accel->vertices[4 * f + i];
@@ -117,6 +142,8 @@ static void add_faces(lc_accel *accel, const lc_scene *scene)
             accel->quads[f][i] = (unsigned)(4 * f + i);
         }
     }
+    if (scene->moves)
+        add_last_step(accel, scene, geometry);
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(accel->scene, geometry, FACES);
     rtcReleaseGeometry(geometry);
@@ -129,12 +156,14 @@ static void add_rounds(lc_accel *accel, const lc_scene *scene)
         *round = scene->rounds[r];
         round->o = to_unit(accel, round->o);
         round->radius *= accel->scale;
+        round->motion = lc_scale(accel->scale, round->motion);
         round->eu = lc_scale(accel->scale, round->eu);
         round->ev = lc_scale(accel->scale, round->ev);
         round->du = lc_scale(1.0 / accel->scale, round->du);
         round->dv = lc_scale(1.0 / accel->scale, round->dv);
     }
     RTCGeometry geometry = rtcNewGeometry(accel->device, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryTimeStepCount(geometry, scene->moves ? 2 : 1);
     rtcSetGeometryUserPrimitiveCount(geometry, (unsigned)scene->round_count);
     rtcSetGeometryUserData(geometry, accel);
     rtcSetGeometryBoundsFunction(geometry, round_bounds, NULL);
@@ -153,6 +182,7 @@ lc_status lc_accel_build(lc_accel **out, const lc_scene *scene, lc_error *err)
         return lc_fail(err, LC_FAULT, "out of memory for the accelerator");
     accel->face_count = scene->face_count;
     accel->round_count = scene->round_count;
+    accel->moves = scene->moves;
     accel->starts = calloc((size_t)scene->face_count + 1, sizeof *accel->starts);
     accel->rounds = calloc((size_t)scene->round_count + 1, sizeof *accel->rounds);
     /* One thread: the tree must not depend on who built which branch first. */

@@ -33,6 +33,7 @@ struct lc_accel {
     face_start *starts; /* of each face */
     lc_round *rounds;   /* in unit space */
     int face_count, round_count;
+    int moves; /* 1: geometry has two time steps, and a query its time */
 };
 
 /* What the callbacks for round parts need besides Embree's ray: the ray in double, in unit space. Of a packet's, the ray with id i has
@@ -47,8 +48,9 @@ typedef struct query {
     lc_vec3 o, d; /* d unit */
     double t_max; /* of a segment */
     int from, to; /* round parts at its ends, or -1 */
-    int hit;      /* round part hit, */
-    double t;     /* and where */
+    double time;
+    int hit; /* round part hit, */
+    double t; /* and where */
 } query;
 
 static inline lc_vec3 to_unit(const lc_accel *accel, lc_vec3 p) { return lc_scale(accel->scale, lc_sub(p, accel->center)); }

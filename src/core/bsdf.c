@@ -35,17 +35,22 @@ int lc_refract(lc_vec3 wo, lc_vec3 n, double ior, lc_vec3 *wi)
 /* ---- lobes ---------------------------------------------------------------------------------------------------- */
 
 /* Ways on from a hit, in the order in which a random number chooses among them. */
-enum { DIFFUSE, MIRROR, GLASS_REFLECTS, GLASS_TRANSMITS, WAYS };
+enum { DIFFUSE, GLOSSY, MIRROR, GLASS_REFLECTS, GLASS_TRANSMITS, WAYS };
 
 /* What all lobes reflect, each in its largest channel: the quotient is at most this sum, and a blend keeps it at or
  * below 1. */
-static double reflectance(const lc_material *m) { return lc_rgb_max(m->diffuse) + lc_rgb_max(m->mirror) + m->glass; }
+static double reflectance(const lc_material *m)
+{
+    double glossy = m->alpha > 0 ? lc_rgb_max(m->glossy) : 0; /* few have it, and a maximum is a call */
+    return lc_rgb_max(m->diffuse) + glossy + lc_rgb_max(m->mirror) + m->glass;
+}
 
 /* The share of each way in that. */
 static void weigh(double weight[WAYS], const lc_material *m, double cos_o)
 {
     double fresnel = m->glass > 0 ? lc_fresnel(cos_o, m->ior) : 0;
     weight[DIFFUSE] = lc_rgb_max(m->diffuse);
+    weight[GLOSSY] = m->alpha > 0 ? lc_rgb_max(m->glossy) : 0;
     weight[MIRROR] = lc_rgb_max(m->mirror);
     weight[GLASS_REFLECTS] = m->glass * fresnel;
     weight[GLASS_TRANSMITS] = m->glass * (1 - fresnel);
@@ -53,15 +58,23 @@ static void weigh(double weight[WAYS], const lc_material *m, double cos_o)
 
 static lc_rgb finite_value(const lc_material *m, const lc_hit *hit, lc_vec3 wi)
 {
-    return lc_dot(hit->n, wi) * lc_dot(hit->n, hit->wo) > 0 ? lc_rgb_scale(LC_INV_PI, m->diffuse) : lc_black();
+    if (!(lc_dot(hit->n, wi) * lc_dot(hit->n, hit->wo) > 0))
+        return lc_black();
+    lc_rgb value = lc_rgb_scale(LC_INV_PI, m->diffuse);
+    if (!(m->alpha > 0))
+        return value;
+    double glossy = lc_glossy_value(lc_facing(hit->n, hit->wo), hit->wo, wi, m->alpha);
+    return lc_rgb_add(value, lc_rgb_scale(glossy, m->glossy));
 }
 
 static double finite_pdf(const lc_material *m, const lc_hit *hit, lc_vec3 wi)
 {
-    double cos_i = lc_dot(hit->n, wi), diffuse = lc_rgb_max(m->diffuse);
-    if (!(diffuse > 0 && cos_i * lc_dot(hit->n, hit->wo) > 0))
-        return 0;
-    return diffuse / reflectance(m) * fabs(cos_i) * LC_INV_PI;
+    double cos_i = lc_dot(hit->n, wi), diffuse = lc_rgb_max(m->diffuse), pdf = 0;
+    if (diffuse > 0 && cos_i * lc_dot(hit->n, hit->wo) > 0)
+        pdf = diffuse / reflectance(m) * fabs(cos_i) * LC_INV_PI;
+    if (m->alpha > 0 && lc_rgb_max(m->glossy) > 0)
+        pdf += lc_rgb_max(m->glossy) / reflectance(m) * lc_glossy_pdf(lc_facing(hit->n, hit->wo), hit->wo, wi, m->alpha);
+    return pdf;
 }
 
 /* The way that u in [0, 1) chooses; never one of weight 0. */
@@ -104,11 +117,12 @@ static lc_rgb grey(double value) { return lc_color(value, value, value); }
 static void follow(lc_scatter *out, int way, const lc_material *m, const lc_hit *hit, double u, double v)
 {
     lc_vec3 n = lc_facing(hit->n, hit->wo);
-    out->is_delta = way != DIFFUSE;
-    out->lobe = way == DIFFUSE ? LC_DIFFUSE : way == MIRROR ? LC_MIRROR : LC_GLASS;
+    out->is_delta = way > GLOSSY;
+    out->lobe = way == DIFFUSE ? LC_DIFFUSE : way == GLOSSY ? LC_GLOSSY : way == MIRROR ? LC_MIRROR : LC_GLASS;
     switch (way) {
     case DIFFUSE:
-        out->wi = lc_cosine_hemisphere(n, u, v);
+    case GLOSSY:
+        out->wi = way == DIFFUSE ? lc_cosine_hemisphere(n, u, v) : lc_glossy_sample(n, hit->wo, m->alpha, u, v);
         out->value = finite_value(m, hit, out->wi);
         out->pdf = finite_pdf(m, hit, out->wi);
         break;
@@ -139,11 +153,16 @@ int lc_bsdf_sample(const lc_scene *scene, const lc_hit *hit, lc_sampler *sampler
     }
     weigh(weight, &m, cos_o);
     int way = choose(weight, total, choice);
-    out->pdf = weight[way] / total;
-    follow(out, way, &m, hit, u, v);
+    lc_scatter scatter;
+    scatter.pdf = weight[way] / total;
+    follow(&scatter, way, &m, hit, u, v);
+    if (!(scatter.pdf > 0)) /* a facet on edge, one in 10^15, where h is all rounding */
+        return 0;
+    *out = scatter;
     if (scene->log)
         lc_log(scene->log, "bsdf sample: %s, wi (%.9g, %.9g, %.9g), value (%.9g, %.9g, %.9g), pdf %.9g%s",
                out->lobe == LC_DIFFUSE  ? "diffuse"
+               : out->lobe == LC_GLOSSY ? "glossy"
                : out->lobe == LC_MIRROR ? "mirror"
                                         : "glass",
                out->wi.x, out->wi.y, out->wi.z, out->value.r, out->value.g, out->value.b, out->pdf,

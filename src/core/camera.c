@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  *
- * The pinhole camera, as Mitsuba 3's `perspective` defines it.
+ * The pinhole camera and the thin lens, as Mitsuba 3's `perspective` and `thinlens` define them.
  */
 #include "core/scene_c.h"
 
@@ -30,6 +30,10 @@ void lc_camera_prepare(lc_camera_frame *frame, const lc_camera_desc *camera, int
     frame->right = lc_affine_vector(&camera->to_world, lc_vec(-2 * t / width, 0, 0));
     frame->down = lc_affine_vector(&camera->to_world, lc_vec(0, -2 * t / aspect / height, 0));
     frame->near_clip = camera->near_clip;
+    frame->lens_x = lc_affine_vector(&camera->to_world, lc_vec(camera->aperture_radius, 0, 0));
+    frame->lens_y = lc_affine_vector(&camera->to_world, lc_vec(0, camera->aperture_radius, 0));
+    frame->focus = camera->aperture_radius > 0 ? camera->focus_distance : 0;
+    frame->moves = 0;
 }
 
 lc_ray lc_camera_frame_ray(const lc_camera_frame *frame, double x, double y)
@@ -39,6 +43,36 @@ lc_ray lc_camera_frame_ray(const lc_camera_frame *frame, double x, double y)
     ray.o = lc_add(frame->eye, lc_scale(frame->near_clip, along));
     ray.d = lc_normalize(along);
     ray.time = 0.0;
+    return ray;
+}
+
+/* From a point of the lens, uniform over its disk, to where the ray through its centre meets the plane that is sharp. */
+static lc_ray lens_ray(const lc_camera_frame *frame, double x, double y, double u, double v)
+{
+    double r = sqrt(u), phi = 2 * LC_PI * v;
+    lc_vec3 offset = lc_add(lc_scale(r * cos(phi), frame->lens_x), lc_scale(r * sin(phi), frame->lens_y));
+    lc_vec3 along = lc_add(frame->corner, lc_add(lc_scale(x, frame->right), lc_scale(y, frame->down)));
+    along = lc_sub(along, lc_scale(1 / frame->focus, offset)); /* still one metre along the axis */
+    lc_ray ray;
+    ray.o = lc_add(lc_add(frame->eye, offset), lc_scale(frame->near_clip, along));
+    ray.d = lc_normalize(along);
+    ray.time = 0.0;
+    return ray;
+}
+
+lc_ray lc_camera_sample(const lc_camera_frame *frame, lc_sampler *sampler, int x, int y)
+{
+    double dx = lc_next(sampler), dy = lc_next(sampler);
+    if (!(frame->focus > 0) && !frame->moves)
+        return lc_camera_frame_ray(frame, x + dx, y + dy);
+    double u = 0, v = 0;
+    if (frame->focus > 0)
+        u = lc_next(sampler), v = lc_next(sampler);
+    lc_ray ray = frame->focus > 0 ? lens_ray(frame, x + dx, y + dy, u, v) : lc_camera_frame_ray(frame, x + dx, y + dy);
+    if (frame->moves) { /* 24 bits: Embree's float then means the same moment */
+        lc_sampler_seek(sampler, LC_DIMENSION_TIME);
+        ray.time = floor(lc_next(sampler) * 0x1p24) * 0x1p-24;
+    }
     return ray;
 }
 

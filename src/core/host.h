@@ -67,6 +67,8 @@ typedef struct lc_side {
     lc_texture diffuse; /* albedo, times the lobe's share in a blend */
     lc_rgb mirror;      /* reflectance, times its share */
     double glass;       /* share of the dielectric lobe */
+    lc_rgb glossy;      /* reflectance of the rough mirror's facets, times its share */
+    double alpha;       /* their roughness, in (0, 1]; 0 where there are none */
 } lc_side;
 
 typedef struct lc_material_desc {
@@ -82,7 +84,8 @@ typedef enum lc_shape_kind { LC_RECTANGLE, LC_DISK, LC_CUBE, LC_SPHERE } lc_shap
 
 typedef struct lc_shape_desc {
     lc_shape_kind kind;
-    lc_affine to_world; /* a sphere's: rotation, uniform scale and translation only */
+    lc_affine to_world; /* a sphere's: rotation, uniform scale and translation only; of a moving shape, at time 0 */
+    lc_vec3 motion;     /* how far it has moved, straight and evenly, at time 1 [m] */
     int flip_normals;
     int material;        /* index into materials */
     int emits;           /* 1: an area light, */
@@ -104,12 +107,14 @@ typedef struct lc_directional_desc {
 
 typedef enum lc_fov_axis { LC_FOV_X, LC_FOV_Y, LC_FOV_DIAGONAL, LC_FOV_SMALLER, LC_FOV_LARGER } lc_fov_axis;
 
-/* Mitsuba's perspective camera: looks along local +z, up is +y, image right is local -x. */
+/* Mitsuba's perspective camera, or with an aperture its thinlens: looks along local +z, up is +y, image right is local -x. */
 typedef struct lc_camera_desc {
     lc_affine to_world; /* rigid */
     double fov;         /* whole angle along fov_axis [degrees], in (0, 180) */
     lc_fov_axis fov_axis;
     double near_clip, far_clip; /* along the viewing axis [m]; 0 and INFINITY when not given */
+    double aperture_radius;     /* of the lens [m], 0: a pinhole */
+    double focus_distance;      /* along the viewing axis, to the plane that is sharp [m]; > 0 where there is a lens */
 } lc_camera_desc;
 
 typedef struct lc_scene_desc {
@@ -156,7 +161,7 @@ double lc_scene_emitting_area(const lc_scene *scene); /* m^2 */
 void lc_intersect(const lc_scene *scene, const lc_ray *ray, lc_hit *hit);
 
 /* The ray through (x, y) of an image of width x height pixels, x to the right and y downwards from the upper left corner; it starts
- * at the near clip. */
+ * at the near clip, at time 0. Of a lens, the ray through its centre. */
 lc_ray lc_camera_ray(const lc_camera_desc *camera, int width, int height, double x, double y);
 /* What that ray sees first: like lc_intersect, but a hit beyond the far clip is a miss. */
 void lc_camera_see(const lc_scene *scene, const lc_ray *ray, lc_hit *hit);
@@ -244,6 +249,15 @@ enum { LC_TILE = 8 };
 
 /* ---- render ---------------------------------------------------------------------------------------------------- */
 
+/* What the same estimator gives over another scene, from the same random numbers. */
+typedef struct lc_term {
+    const lc_scene *scene;
+    double factor; /* of it */
+    int shift;     /* its bounces are this many fewer */
+} lc_term;
+
+enum { LC_MAX_TERMS = 8 };
+
 typedef struct lc_render_options {
     int min_bounces, max_bounces;
     uint64_t seed;
@@ -251,6 +265,8 @@ typedef struct lc_render_options {
     uint64_t first, count;                     /* sample indices */
     int threads;                               /* 0: one a core */
     int shard, shards;                         /* shards = 0 or 1: everything */
+    const lc_term *minus;                      /* each sample less the sum of these: such a film may be negative */
+    int minus_count;                           /* at most LC_MAX_TERMS; 0: nothing is taken off */
     void (*progress)(void *user, double done); /* may be NULL; 0..1, ends with 1; from one thread */
     void *user;
 } lc_render_options;
@@ -260,22 +276,21 @@ typedef struct lc_render_options {
 lc_status lc_render(lc_film *film, const lc_scene *scene, const lc_estimator *estimator,
                     const lc_render_options *options, lc_error *err);
 
-/* The same film from samples that are made elsewhere, by a process of its own. `fill` hands over each sample of the options once; where it
- * fails, the film is spoilt. */
-typedef lc_status lc_fill_fn(void *user, lc_film *film, const lc_render_options *options, lc_error *err);
-lc_status lc_render_from(lc_film *film, const lc_scene *scene, const lc_estimator *estimator,
-                         const lc_render_options *options, lc_fill_fn *fill, void *user, lc_error *err);
-/* For `fill`: samples first, ... of a pixel (counted row by row): LC_BLOCK of them at once, fewer only at the end of what
- * is asked for, in ascending order. Bad ones are counted and overwritten by 0. One thread. */
-void lc_film_put(lc_film *film, uint32_t pixel, uint64_t first, double (*samples)[3], int count);
-
-/* Where the films of an estimator come from; NULL stands for lc_render. `render` adds to the film what lc_render would, or fails: LC_WRONG
- * when the estimator is at fault, and `err` says of what. */
-typedef struct lc_film_source {
-    lc_status (*render)(void *user, lc_film *film, const lc_scene *scene, const lc_estimator *estimator,
-                        const lc_render_options *options, lc_error *err);
+/* An estimator whose samples are made elsewhere, by another process. lc_render, that is all of the harness, takes it for any other, as long as
+ * it is handed on by pointer: lc_render knows it by its function, and gets the samples from `fill`, which hands over each sample of the
+ * options once by lc_film_put, or fails, LC_WRONG where the estimator is at fault. The film is then spoilt. */
+typedef struct lc_outside {
+    lc_estimator estimator; /* radiance: lc_radiance_outside */
+    lc_status (*fill)(void *user, lc_film *film, const lc_scene *scene, const lc_render_options *options, lc_error *err);
     void *user;
-} lc_film_source;
+} lc_outside;
+
+lc_radiance_fn lc_radiance_outside; /* NAN: nobody can call it */
+
+/* For `fill`: samples first, ... of a pixel (counted row by row): LC_BLOCK of them at once, fewer only at the end of what
+ * is asked for, in ascending order; each is that of the scene, then those of the terms. Bad ones are counted. One thread. */
+void lc_film_put(lc_film *film, const lc_render_options *options, uint32_t pixel, uint64_t first,
+                 const double (*samples)[3], int count);
 
 /* ---- replay: one sample, told step by step ------------------------------------------------------------------------ */
 

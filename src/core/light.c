@@ -61,13 +61,16 @@ static void sample_area(const lc_scene *scene, int shape, double pdf_area, const
 {
     double u = lc_next(sampler), v = lc_next(sampler);
     sample_shape(scene, shape, u, v, out);
+    out->radiance = lc_shape_radiance(scene, shape, out->part, out->p);
+    if (scene->moves)
+        out->p = lc_add(out->p, lc_shape_shift(scene, shape, hit->time));
     lc_vec3 to = lc_sub(out->p, hit->p);
     out->is_delta = 0;
     out->distance = lc_length(to);
     out->wi = lc_scale(1.0 / out->distance, to);
     out->irradiance = lc_black();
-    out->radiance = lc_shape_radiance(scene, shape, out->part, out->p);
     out->pdf_area = pdf_area;
+    out->pdf_solid = 0.0;
 }
 
 static void sample_delta(const lc_scene *scene, const lc_light *light, const lc_hit *hit, lc_light_sample *out)
@@ -75,7 +78,7 @@ static void sample_delta(const lc_scene *scene, const lc_light *light, const lc_
     out->is_delta = 1;
     out->shape = out->part = -1;
     out->radiance = lc_black();
-    out->pdf_area = 0.0;
+    out->pdf_area = out->pdf_solid = 0.0;
     if (light->kind == LC_LIGHT_POINT) {
         const lc_point_desc *point = &scene->desc.points[light->index];
         lc_vec3 to = lc_sub(point->position, hit->p);
@@ -104,6 +107,25 @@ void lc_light_sample_one(const lc_scene *scene, int i, const lc_hit *hit, lc_sam
         log_light(scene, out);
 }
 
+void lc_light_sample_solid(const lc_scene *scene, int i, const lc_hit *hit, lc_sampler *sampler, lc_light_sample *out)
+{
+    const lc_light *light = &scene->lights[i];
+    if (light->kind != LC_LIGHT_AREA) {
+        sample_delta(scene, light, hit, out);
+    } else {
+        lc_sampler start = *sampler;
+        sample_area(scene, light->index, 1.0 / scene->shapes[light->index].area, hit, sampler, out);
+        double u = lc_next(&start), v = lc_next(&start), cos_light = -lc_dot(out->n, out->wi);
+        out->pdf_solid = cos_light > 0 ? out->pdf_area * out->distance * out->distance / cos_light : 0.0;
+        if (lc_sample_solid(scene, light->index, hit, u, v, out)) {
+            out->radiance = lc_shape_radiance(scene, light->index, out->part, out->p);
+            out->pdf_area = 0.0; /* another density than by area */
+        }
+    }
+    if (scene->log)
+        log_light(scene, out);
+}
+
 int lc_light_sample_union(const lc_scene *scene, const lc_hit *hit, lc_sampler *sampler, lc_light_sample *out)
 {
     double total = lc_scene_emitting_area(scene);
@@ -117,6 +139,14 @@ int lc_light_sample_union(const lc_scene *scene, const lc_hit *hit, lc_sampler *
     if (scene->log)
         log_light(scene, out);
     return 1;
+}
+
+double lc_light_pdf_area(const lc_scene *scene, const lc_hit *hit)
+{
+    double pdf_area = hit->valid && scene->desc.shapes[hit->shape].emits ? 1.0 / scene->shapes[hit->shape].area : 0.0;
+    if (scene->log)
+        lc_log(scene->log, "light pdf: pdf_area %.9g 1/m^2", pdf_area);
+    return pdf_area;
 }
 
 int lc_visible(const lc_scene *scene, const lc_hit *hit, const lc_light_sample *light)

@@ -92,30 +92,33 @@ typedef struct lc_hit {
     lc_vec3 n;       /* unit normal of the surface as modelled; it emits on this side. NOT turned to the viewer */
     lc_vec3 wo;      /* unit direction back to where the ray came from */
     double distance; /* from there [m] */
-    double time;     /* the ray's */
+    double time;     /* the ray's: when this is looked at, and all that is seen from here */
     int shape, part; /* the host's own: which surface this is */
 } lc_hit;
 
 /* What the surface is made of, as seen from the side of `wo`. The lobes add up (a blend has several).
- * The diffuse lobe of a one-sided surface is black from behind; so is its mirror. */
+ * The diffuse lobe of a one-sided surface is black from behind; so are its mirrors, smooth and rough. */
 typedef struct lc_material {
     lc_rgb diffuse; /* albedo of the Lambertian lobe, each channel in [0, 1] */
     lc_rgb mirror;  /* reflectance of the mirror lobe, each channel in [0, 1] */
     double glass;   /* share of the smooth dielectric lobe, in [0, 1] */
     double ior;     /* refractive index beyond the surface / index on the side of `wo`; > 0 */
+    lc_rgb glossy;  /* reflectance of the facets of the rough mirror lobe (GGX), each channel in [0, 1] */
+    double alpha;   /* their roughness, in (0, 1]; 0 where there are none */
 } lc_material;
 
 lc_material lc_material_at(const lc_scene *scene, const lc_hit *hit);
 
 /* The value of the BSDF between hit->wo and `wi` [1/sr], WITHOUT the cosine: its finite lobes only, since a
- * mirror or glass has no value anywhere, only a weight. Lambert: albedo / pi on the side of wo, else black. */
+ * mirror or glass has no value anywhere, only a weight. On the side of wo albedo / pi (Lambert) + glossy D G / (4 cos_o
+ * cos_i) (GGX with Smith's masking: Walter et al. 2007), else black. */
 lc_rgb lc_bsdf_eval(const lc_scene *scene, const lc_hit *hit, lc_vec3 wi);
 
 /* One way on for a path. The quotient is left to you: throughput *= value cos_surface / pdf, or, where is_delta,
  * value / pdf. */
 typedef struct lc_scatter {
     lc_vec3 wi;   /* where to look next: either side of the surface */
-    int lobe;     /* LC_DIFFUSE, LC_MIRROR or LC_GLASS: the one that was chosen */
+    int lobe;     /* LC_DIFFUSE, LC_GLOSSY, LC_MIRROR or LC_GLASS: the one that was chosen */
     int is_delta; /* 1: mirror or glass, which know one direction and no density */
     lc_rgb value; /* finite: lc_bsdf_eval() [1/sr]. delta: radiance along wo / radiance from wi; through glass
                    * share (1 - F) / ior^2, for a lossless interface keeps L / n^2 (Veach, thesis 1997, 5.2) */
@@ -123,8 +126,9 @@ typedef struct lc_scatter {
 } lc_scatter;
 
 /* Picks wi: a lobe in proportion to its reflectance (its largest channel; glass reflects with F and transmits with
- * 1 - F), then within the diffuse lobe in proportion to the cosine. Draws three numbers. The quotient never exceeds 1,
- * but for glass's 1 / ior^2. Returns 0, *out untouched, where nothing is reflected: absorbed. */
+ * 1 - F), then within the diffuse lobe in proportion to the cosine, within the glossy one in proportion to the facets
+ * that wo sees: of those some lead below the horizon, where the value is black. Draws three numbers. The quotient never
+ * exceeds 1, but for glass's 1 / ior^2. Returns 0, *out untouched, where nothing is reflected: absorbed. */
 int lc_bsdf_sample(const lc_scene *scene, const lc_hit *hit, lc_sampler *sampler, lc_scatter *out);
 
 /* Density with which lc_bsdf_sample() picks `wi` by its finite lobes, the choice among all lobes included [1/sr];
@@ -150,7 +154,7 @@ int lc_trace(const lc_scene *scene, const lc_hit *from, lc_vec3 wi, lc_hit *next
 
 /* A place on a light, as seen from a hit. */
 typedef struct lc_light_sample {
-    int is_delta;      /* 1: a point or directional light; it has no area: use `irradiance`, not the last four */
+    int is_delta;      /* 1: a point or directional light; it has no area: use `irradiance`, not what is below */
     lc_vec3 wi;        /* unit direction from the hit to the light */
     double distance;   /* [m]; INFINITY for a directional light */
     lc_rgb irradiance; /* delta: received by a surface that faces wi [W m^-2]: I / d^2, or E0 */
@@ -158,17 +162,26 @@ typedef struct lc_light_sample {
     lc_vec3 n;         /* area: unit normal there, on the side that emits */
     lc_rgb radiance;   /* area: emitted from p on the side of n, whatever side wi sees [W sr^-1 m^-2] */
     double pdf_area;   /* area: density of p with respect to area [1/m^2] */
+    double pdf_solid;  /* area, by lc_light_sample_solid() only: density of wi over directions [1/sr] */
     int shape, part;   /* the host's own */
 } lc_light_sample;
 
 /* Number of lights: each emitting shape, point light and directional light is one. The sky is none. */
 int lc_light_count(const lc_scene *scene);
 
-/* Picks a point on light `i`, 0 <= i < lc_light_count(), uniformly over its area. */
+/* Picks a point on light `i`, 0 <= i < lc_light_count(), uniformly over its area; a moving light is where it is at hit->time. */
 void lc_light_sample_one(const lc_scene *scene, int i, const lc_hit *hit, lc_sampler *sampler, lc_light_sample *out);
+
+/* The same for a direction: uniform over the solid angle in which the hit sees light `i`, if that is a sphere or a rectangle (Urena,
+ * Fajardo, King 2013); other shapes by area. Its density is pdf_solid; 0 where wi sees the back of a shape picked by area. */
+void lc_light_sample_solid(const lc_scene *scene, int i, const lc_hit *hit, lc_sampler *sampler, lc_light_sample *out);
 
 /* Picks a point uniformly over the union of ALL emitting area (then pdf_area = 1 / total area); returns 0 where nothing has area. */
 int lc_light_sample_union(const lc_scene *scene, const lc_hit *hit, lc_sampler *sampler, lc_light_sample *out);
+
+/* The pdf_area that lc_light_sample_one() gives a point of the light which a ray has found at `hit` [1/m^2]: what its
+ * density would have been, had the light been sampled instead. 0 on a miss, and where nothing emits. */
+double lc_light_pdf_area(const lc_scene *scene, const lc_hit *hit);
 
 /* 1 when nothing stands between the hit and the light's point, else 0. */
 int lc_visible(const lc_scene *scene, const lc_hit *hit, const lc_light_sample *light);
@@ -199,9 +212,9 @@ typedef struct lc_options {
 typedef lc_rgb lc_radiance_fn(const lc_scene *scene, const lc_ray *ray, const lc_hit *hit, const lc_options *options,
                               lc_sampler *sampler);
 
-enum { LC_DIFFUSE = 1, LC_MIRROR = 2, LC_GLASS = 4 };               /* lobes an estimator follows */
-enum { LC_AREA = 1, LC_POINT = 2, LC_DIRECTIONAL = 4, LC_SKY = 8 }; /* emitters it can reach */
-enum { LC_UNBOUNDED = 1 << 20 };                                    /* max_bounces of an estimator without a limit */
+enum { LC_DIFFUSE = 1, LC_MIRROR = 2, LC_GLASS = 4, LC_GLOSSY = 8 }; /* lobes an estimator follows */
+enum { LC_AREA = 1, LC_POINT = 2, LC_DIRECTIONAL = 4, LC_SKY = 8 };  /* emitters it can reach */
+enum { LC_UNBOUNDED = 1 << 20 };                                     /* max_bounces of an estimator without a limit */
 
 typedef struct lc_estimator {
     int abi;                  /* LC_ABI */

@@ -15,7 +15,7 @@ typedef struct job {
     const lc_scene *scene;
     const lc_estimator *estimator;
     const lc_render_options *options;
-    lc_camera_frame frame;
+    lc_camera_frame frame, minus_frame[LC_MAX_TERMS];
     int tiles_x, tiles;
     pthread_mutex_t lock; /* of all that follows */
     int next_tile, done;
@@ -48,8 +48,7 @@ static void look(packet *p, const lc_scene *scene, const lc_camera_frame *frame,
         lc_sampler *sampler = &p->samplers[i];
         lc_sampler_start(sampler, o->seed, o->arm, pixel, (uint32_t)sample);
         sampler->log = sample == s ? log : NULL;
-        double dx = lc_next(sampler), dy = lc_next(sampler);
-        p->rays[i] = lc_camera_frame_ray(frame, x + dx, y + dy);
+        p->rays[i] = lc_camera_sample(frame, sampler, x, y);
         lc_sampler_seek(sampler, LC_DIMENSION_ESTIMATOR);
     }
     lc_camera_see_packet(scene, p->rays, p->hits);
@@ -66,20 +65,54 @@ static void note_bad(bad_samples *bad, lc_rgb c, uint32_t pixel, uint64_t sample
     bad->value[2] = c.b;
 }
 
+/* The packets that hold sample `s`: packet 0 of the scene, packet 1 + t of term t. */
+static void look_everywhere(packet *packets, const job *j, uint32_t pixel, int x, int y, uint64_t s)
+{
+    const lc_render_options *o = j->options;
+    look(&packets[0], j->scene, &j->frame, o, pixel, x, y, s, NULL);
+    for (int t = 0; t < o->minus_count; ++t)
+        look(&packets[1 + t], o->minus[t].scene, &j->minus_frame[t], o, pixel, x, y, s, NULL);
+}
+
+/* Adds what term `t` gave, or -1: the scene; returns 0, with the value, where that is bad. */
+static int add_term(lc_rgb *sum, lc_rgb c, int t, const lc_render_options *o)
+{
+    if (is_bad(c)) {
+        *sum = c;
+        return 0;
+    }
+    *sum = t < 0 ? c : lc_rgb_add(*sum, lc_rgb_scale(-o->minus[t].factor, c));
+    return 1;
+}
+
+/* A sample less the terms, each from the same random numbers; returns 0, with the value that is bad, where one is. */
+static int sample_of(lc_rgb *out, packet *packets, const job *j, uint64_t s)
+{
+    const lc_render_options *o = j->options;
+    int i = (int)(s % LC_PACKET);
+    for (int t = -1; t < o->minus_count; ++t) {
+        const lc_term self = {j->scene, 1, 0}, *term = t < 0 ? &self : &o->minus[t];
+        packet *p = &packets[1 + t];
+        lc_options bounces = {o->min_bounces - term->shift, o->max_bounces - term->shift};
+        lc_rgb c = j->estimator->radiance(term->scene, &p->rays[i], &p->hits[i], &bounces, &p->samplers[i]);
+        if (!add_term(out, c, t, o))
+            return 0;
+    }
+    return 1;
+}
+
 static void render_pixel(const job *j, int x, int y, bad_samples *bad)
 {
     const lc_render_options *o = j->options;
     uint32_t pixel = (uint32_t)(y * j->film->width + x);
-    lc_options bounces = {o->min_bounces, o->max_bounces};
     double block[LC_BLOCK][3];
-    packet p;
+    packet packets[1 + LC_MAX_TERMS];
     int filled = 0;
     for (uint64_t s = o->first; s < o->first + o->count; ++s) {
-        int i = (int)(s % LC_PACKET);
-        if (i == 0 || s == o->first)
-            look(&p, j->scene, &j->frame, o, pixel, x, y, s, NULL);
-        lc_rgb c = j->estimator->radiance(j->scene, &p.rays[i], &p.hits[i], &bounces, &p.samplers[i]);
-        if (is_bad(c)) {
+        lc_rgb c;
+        if (s % LC_PACKET == 0 || s == o->first)
+            look_everywhere(packets, j, pixel, x, y, s);
+        if (!sample_of(&c, packets, j, s)) {
             note_bad(bad, c, pixel, s);
             c = lc_black(); /* the film stays readable; the count makes it fail */
         }
@@ -166,6 +199,14 @@ static lc_status check_options(const lc_film *film, const lc_scene *scene, const
     if (o->shards > 1 && (o->shard < 0 || o->shard >= o->shards))
         return lc_fail(err, LC_BAD_INPUT, "%s: shard %d of %d, expected 0 to %d", scene_name, o->shard, o->shards,
                        o->shards - 1);
+    if (o->minus_count < 0 || o->minus_count > LC_MAX_TERMS)
+        return lc_fail(err, LC_BAD_INPUT, "%s: less %d scenes, expected at most %d", scene_name, o->minus_count,
+                       LC_MAX_TERMS);
+    for (int i = 0; i < o->minus_count; ++i)
+        if (o->minus[i].shift > o->min_bounces || o->max_bounces - o->minus[i].shift > estimator->max_bounces)
+            return lc_fail(err, LC_BAD_INPUT, "%s: bounces %d to %d over another scene, expected 0 to %d", scene_name,
+                           o->min_bounces - o->minus[i].shift, o->max_bounces - o->minus[i].shift,
+                           estimator->max_bounces);
     if (film->count == 0)
         return LC_OK;
     if (film->seed != o->seed || film->arm != o->arm || film->first + film->count != o->first ||
@@ -205,6 +246,13 @@ lc_status lc_render(lc_film *film, const lc_scene *scene, const lc_estimator *es
         o.shard = 0;
         o.shards = 1;
     }
+    if (estimator->radiance == lc_radiance_outside) {
+        const lc_outside *outside = (const lc_outside *)(const void *)estimator;
+        status = outside->fill(outside->user, film, scene, &o, err);
+        if (status == LC_OK)
+            write_down(film, scene, estimator, &o);
+        return status;
+    }
     job j = {.film = film,
              .scene = scene,
              .estimator = estimator,
@@ -213,6 +261,11 @@ lc_status lc_render(lc_film *film, const lc_scene *scene, const lc_estimator *es
              .lock = PTHREAD_MUTEX_INITIALIZER,
              .next_tile = o.shard};
     lc_camera_prepare(&j.frame, &scene->desc.camera, film->width, film->height);
+    j.frame.moves = scene->moves;
+    for (int i = 0; i < o.minus_count; ++i) {
+        lc_camera_prepare(&j.minus_frame[i], &o.minus[i].scene->desc.camera, film->width, film->height);
+        j.minus_frame[i].moves = o.minus[i].scene->moves;
+    }
     j.tiles = j.tiles_x * ((film->height + LC_TILE - 1) / LC_TILE);
 
     long cores = o.threads > 0 ? o.threads : sysconf(_SC_NPROCESSORS_ONLN);
@@ -230,35 +283,33 @@ lc_status lc_render(lc_film *film, const lc_scene *scene, const lc_estimator *es
     return LC_OK;
 }
 
-lc_status lc_render_from(lc_film *film, const lc_scene *scene, const lc_estimator *estimator,
-                         const lc_render_options *options, lc_fill_fn *fill, void *user, lc_error *err)
+lc_rgb lc_radiance_outside(const lc_scene *scene, const lc_ray *ray, const lc_hit *hit, const lc_options *options,
+                           lc_sampler *sampler)
 {
-    lc_render_options o = *options;
-    lc_status status = check_options(film, scene, estimator, options, err);
-    if (status != LC_OK)
-        return status;
-    if (o.shards < 1) {
-        o.shard = 0;
-        o.shards = 1;
-    }
-    status = fill(user, film, &o, err);
-    if (status == LC_OK)
-        write_down(film, scene, estimator, &o);
-    return status;
+    (void)scene, (void)ray, (void)hit, (void)options, (void)sampler;
+    return lc_color(NAN, NAN, NAN);
 }
 
-void lc_film_put(lc_film *film, uint32_t pixel, uint64_t first, double (*samples)[3], int count)
+void lc_film_put(lc_film *film, const lc_render_options *options, uint32_t pixel, uint64_t first,
+                 const double (*samples)[3], int count)
 {
     bad_samples bad = {0, 0, 0, {0, 0, 0}};
+    double block[LC_BLOCK][3];
     for (int i = 0; i < count; ++i) {
-        double *s = samples[i];
-        lc_rgb c = lc_color(s[0], s[1], s[2]);
-        if (is_bad(c)) {
-            note_bad(&bad, c, pixel, first + (uint64_t)i);
-            s[0] = s[1] = s[2] = 0;
+        lc_rgb sum = lc_black();
+        for (int t = -1, good = 1; good && t < options->minus_count; ++t, ++samples) {
+            good = add_term(&sum, lc_color((*samples)[0], (*samples)[1], (*samples)[2]), t, options);
+            if (!good) {
+                note_bad(&bad, sum, pixel, first + (uint64_t)i);
+                sum = lc_black();
+                samples += options->minus_count - 1 - t;
+            }
         }
+        block[i][0] = sum.r;
+        block[i][1] = sum.g;
+        block[i][2] = sum.b;
     }
-    lc_pixel_add(&film->pixels[pixel], (const double(*)[3])samples, count);
+    lc_pixel_add(&film->pixels[pixel], (const double(*)[3])block, count);
     report_bad(film, &bad);
 }
 
@@ -282,6 +333,7 @@ lc_rgb lc_replay(lc_scene *scene, const lc_estimator *estimator, const lc_render
     int i = (int)(sample % LC_PACKET);
     lc_replay_begin(estimator->radiance);
     lc_camera_prepare(&frame, &scene->desc.camera, width, height);
+    frame.moves = scene->moves;
     look(&p, scene, &frame, options, (uint32_t)(y * width + x), x, y, sample, log);
     scene->log = log;
     if (log)

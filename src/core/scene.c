@@ -70,6 +70,7 @@ static void make_round(lc_round *round, const lc_shape_desc *desc, int shape)
     round->ev = lc_affine_vector(m, lc_vec(0, 1, 0));
     round->sign = desc->flip_normals ? -1.0 : 1.0;
     round->shape = shape;
+    round->motion = desc->motion;
     if (round->is_sphere) {
         round->radius = lc_length(round->eu); /* not cbrt(det), which rounds otherwise at another scale */
         round->n = lc_affine_vector(m, lc_vec(0, 0, 1));
@@ -86,6 +87,7 @@ static void make_shapes(lc_scene *scene)
     for (int i = 0; i < scene->desc.shape_count; ++i) {
         const lc_shape_desc *desc = &scene->desc.shapes[i];
         lc_shape *shape = &scene->shapes[i];
+        scene->moves |= lc_length(desc->motion) > 0;
         shape->is_round = desc->kind == LC_DISK || desc->kind == LC_SPHERE;
         shape->first = shape->is_round ? scene->round_count : scene->face_count;
         shape->count = desc->kind == LC_CUBE ? 6 : 1;
@@ -140,6 +142,7 @@ static void find_lobes(lc_scene *scene)
             scene->lobes |= texture_is_black(&m->side[side].diffuse) ? 0 : LC_DIFFUSE;
             scene->lobes |= is_black(m->side[side].mirror) ? 0 : LC_MIRROR;
             scene->lobes |= m->side[side].glass > 0 ? LC_GLASS : 0;
+            scene->lobes |= is_black(m->side[side].glossy) ? 0 : LC_GLOSSY;
         }
     }
 }
@@ -152,12 +155,25 @@ static lc_status check_description(const lc_scene_desc *desc, lc_error *err)
     if (!finite_affine(&desc->camera.to_world) || !(desc->camera.fov > 0 && desc->camera.fov < 180))
         return lc_fail(err, LC_BAD_INPUT, "%s: the camera's to_world must be finite and its fov between 0 and 180",
                        desc->name);
+    if (!(desc->camera.aperture_radius >= 0 && isfinite(desc->camera.aperture_radius)) ||
+        (desc->camera.aperture_radius > 0 && !(desc->camera.focus_distance > 0 && isfinite(desc->camera.focus_distance))))
+        return lc_fail(err, LC_BAD_INPUT,
+                       "%s: a lens of aperture_radius %g and focus_distance %g, expected finite and positive numbers",
+                       desc->name, desc->camera.aperture_radius, desc->camera.focus_distance);
     for (int i = 0; i < desc->shape_count; ++i) {
         const lc_shape_desc *shape = &desc->shapes[i];
         if (!finite_affine(&shape->to_world) || lc_affine_determinant(&shape->to_world) == 0)
             return lc_fail(err, LC_BAD_INPUT, "%s:%d: to_world is singular or not finite", desc->name, shape->line);
+        if (!isfinite(lc_length(shape->motion)))
+            return lc_fail(err, LC_BAD_INPUT, "%s:%d: motion is not finite", desc->name, shape->line);
         if (shape->material < 0 || shape->material >= desc->material_count)
             return lc_fail(err, LC_BAD_INPUT, "%s:%d: the shape has no material", desc->name, shape->line);
+        for (int side = 0; side < 2; ++side) {
+            const lc_side *s = &desc->materials[shape->material].side[side];
+            if (!is_black(s->glossy) && !(s->alpha > 0 && s->alpha <= 1))
+                return lc_fail(err, LC_BAD_INPUT, "%s:%d: roughness %g of the shape's material, expected (0, 1]",
+                               desc->name, shape->line, s->alpha);
+        }
     }
     return LC_OK;
 }

@@ -22,6 +22,7 @@ typedef struct lc_round {
     lc_vec3 o, eu, ev, n, du, dv; /* as above (disk); the columns of a sphere's rotation in eu, ev, n */
     double radius, sign;          /* sphere; sign = -1 when its normals are flipped inwards */
     double area;
+    lc_vec3 motion; /* to time 1 */
     int shape;
 } lc_round;
 
@@ -50,8 +51,20 @@ struct lc_scene {
     double *area_to; /* emitting area of lights 0..i: area_to[light_count - 1] is the total */
     struct lc_accel *accel;
     unsigned lobes, emitters;
+    int moves; /* 1: some shape does; all that asks for the time stands behind this */
     const lc_trace_log *log; /* NULL but in a replay */
 };
+
+/* How far a shape has moved at `time`. Faces and round parts are stored as at time 0: what is done with a point of one, or with a ray that
+ * meets it, is done there, after moving the point back. */
+static inline lc_vec3 lc_shape_shift(const lc_scene *scene, int shape, double time)
+{
+    return lc_scale(time, scene->desc.shapes[shape].motion);
+}
+static inline lc_vec3 lc_rest_point(const lc_scene *scene, const lc_hit *hit)
+{
+    return scene->moves ? lc_sub(hit->p, lc_shape_shift(scene, hit->shape, hit->time)) : hit->p;
+}
 
 /* accel.c, the only file that knows Embree. */
 typedef struct lc_accel lc_accel;
@@ -73,9 +86,20 @@ int lc_accel_occluded(const lc_accel *accel, const lc_scene *scene, lc_vec3 o, i
 typedef struct lc_camera_frame {
     lc_vec3 eye, corner, right, down; /* the upper left corner, and one pixel's steps, as seen from the eye */
     double near_clip;
+    lc_vec3 lens_x, lens_y; /* two radii of the lens, across the axis; 0 of a pinhole */
+    double focus;           /* depth of the plane that is sharp; 0 of a pinhole */
+    int moves;              /* of the scene: rays need a time */
 } lc_camera_frame;
 void lc_camera_prepare(lc_camera_frame *frame, const lc_camera_desc *camera, int width, int height);
 lc_ray lc_camera_frame_ray(const lc_camera_frame *frame, double x, double y);
+/* A ray through pixel (x, y), uniform over its square, over the lens and over time. Draws from the camera's dimensions. */
+lc_ray lc_camera_sample(const lc_camera_frame *frame, lc_sampler *sampler, int x, int y);
+
+/* glossy.c: a rough mirror of reflectance 1. Unit n on the side of wo, alpha in (0, 1]; value and density in 1/sr. The density also
+ * covers what falls below the horizon, where the value is 0, and so integrates to 1. */
+double lc_glossy_value(lc_vec3 n, lc_vec3 wo, lc_vec3 wi, double alpha);
+double lc_glossy_pdf(lc_vec3 n, lc_vec3 wo, lc_vec3 wi, double alpha);
+lc_vec3 lc_glossy_sample(lc_vec3 n, lc_vec3 wo, double alpha, double u, double v);
 /* lc_camera_see() for rays through one pixel. */
 void lc_camera_see_packet(const lc_scene *scene, const lc_ray rays[LC_PACKET], lc_hit hits[LC_PACKET]);
 
@@ -83,11 +107,15 @@ void lc_camera_see_packet(const lc_scene *scene, const lc_ray rays[LC_PACKET], l
 void lc_tangents(lc_vec3 n, lc_vec3 *s, lc_vec3 *t);
 lc_vec3 lc_uniform_sphere(double u, double v);
 
+/* solid_angle.c: fills wi, distance, p, n, pdf_solid, shape and part of a place on the shape, uniform over the directions in which the
+ * hit sees it; 0 where that is not known of such a shape. */
+int lc_sample_solid(const lc_scene *scene, int index, const lc_hit *hit, double u, double v, lc_light_sample *out);
+
 /* lc_material_at() without a word in the log. */
 lc_material lc_surface_material(const lc_scene *scene, const lc_hit *hit);
-/* What the front of a shape emits at p [W sr^-1 m^-2]. */
+/* What the front of a shape emits at p, where p is at time 0 [W sr^-1 m^-2]. */
 lc_rgb lc_shape_radiance(const lc_scene *scene, int shape, int part, lc_vec3 p);
-/* Texture coordinates of a point on a shape, as Mitsuba 3 has them. */
+/* Texture coordinates of a point on a shape at time 0, as Mitsuba 3 has them. */
 void lc_shape_uv(const lc_scene *scene, int shape, int part, lc_vec3 p, double *u, double *v);
 
 void lc_replay_begin(lc_radiance_fn *radiance);

@@ -101,14 +101,16 @@ static int is_front(const lc_hit *hit) { return lc_dot(hit->n, hit->wo) > 0; }
 
 lc_material lc_surface_material(const lc_scene *scene, const lc_hit *hit)
 {
-    lc_material material = {{0, 0, 0}, {0, 0, 0}, 0, 1};
+    lc_material material = {{0, 0, 0}, {0, 0, 0}, 0, 1, {0, 0, 0}, 0};
     if (!hit->valid)
         return material;
     const lc_material_desc *desc = &scene->desc.materials[scene->desc.shapes[hit->shape].material];
     const lc_side *side = &desc->side[is_front(hit) ? 0 : 1];
-    material.diffuse = texture_on(scene, &side->diffuse, hit->shape, hit->part, hit->p);
+    material.diffuse = texture_on(scene, &side->diffuse, hit->shape, hit->part, lc_rest_point(scene, hit));
     material.mirror = side->mirror;
     material.glass = side->glass;
+    material.glossy = side->glossy;
+    material.alpha = side->alpha;
     if (side->glass > 0)
         material.ior = is_front(hit) ? desc->int_ior / desc->ext_ior : desc->ext_ior / desc->int_ior;
     return material;
@@ -118,13 +120,16 @@ lc_material lc_material_at(const lc_scene *scene, const lc_hit *hit)
 {
     lc_material material = lc_surface_material(scene, hit);
     if (scene->log && hit->valid)
-        lc_log(scene->log, "material: diffuse (%.6g, %.6g, %.6g), mirror (%.6g, %.6g, %.6g), glass %.6g, ior %.6g",
+        lc_log(scene->log,
+               "material: diffuse (%.6g, %.6g, %.6g), mirror (%.6g, %.6g, %.6g), glass %.6g, ior %.6g, glossy (%.6g, "
+               "%.6g, %.6g), alpha %.6g",
                material.diffuse.r, material.diffuse.g, material.diffuse.b, material.mirror.r, material.mirror.g,
-               material.mirror.b, material.glass, material.ior);
+               material.mirror.b, material.glass, material.ior, material.glossy.r, material.glossy.g,
+               material.glossy.b, material.alpha);
     return material;
 }
 
-/* Emitted by the front of the shape at p. */
+/* Emitted by the front of the shape at p, where p is at time 0. */
 lc_rgb lc_shape_radiance(const lc_scene *scene, int shape, int part, lc_vec3 p)
 {
     const lc_shape_desc *desc = &scene->desc.shapes[shape];
@@ -137,7 +142,7 @@ lc_rgb lc_emission(const lc_scene *scene, const lc_hit *hit)
     if (!hit->valid)
         radiance = scene->desc.has_sky ? scene->desc.sky : lc_black();
     else if (is_front(hit))
-        radiance = lc_shape_radiance(scene, hit->shape, hit->part, hit->p);
+        radiance = lc_shape_radiance(scene, hit->shape, hit->part, lc_rest_point(scene, hit));
     if (scene->log)
         lc_log(scene->log, "emission: (%.9g, %.9g, %.9g) W sr^-1 m^-2", radiance.r, radiance.g, radiance.b);
     return radiance;

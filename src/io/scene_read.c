@@ -55,7 +55,8 @@ static int read_shape(struct reader *r, struct node *node)
         if (scene_type_is(node, kinds[i].type))
             shape->kind = kinds[i].kind;
     shape->radiance = lc_texture_constant(lc_black());
-    if (!read_geometry(r, node, shape) || !scene_only_child(r, node, "bsdf", &bsdf) ||
+    const struct node *motion = scene_property(node, "motion");
+    if (!read_geometry(r, node, shape) || (motion && !scene_vector(r, motion, &shape->motion)) || !scene_only_child(r, node, "bsdf", &bsdf) ||
         !scene_only_child(r, node, "emitter", &emitter))
         return 0;
     if (emitter) {
@@ -175,7 +176,7 @@ static int read_film(struct reader *r, const struct node *node)
                       "over their squares");
 }
 
-static int read_lens(struct reader *r, const struct node *node, lc_camera_desc *camera)
+static int read_view(struct reader *r, const struct node *node, lc_camera_desc *camera)
 {
     static const char *const axes[] = {"x", "y", "diagonal", "smaller", "larger"}; /* in lc_fov_axis's order */
     const struct node *near_clip = scene_property(node, "near_clip");
@@ -197,12 +198,29 @@ static int read_lens(struct reader *r, const struct node *node, lc_camera_desc *
            scene_fail(r, node, "near_clip %g is not below far_clip %g", camera->near_clip, camera->far_clip);
 }
 
+/* Mitsuba replaces an aperture of 0, and focuses at its far clip unless told where. */
+static int read_lens(struct reader *r, const struct node *node, lc_camera_desc *camera)
+{
+    static const char *const names[] = {"aperture_radius", "focus_distance"};
+    double *const values[] = {&camera->aperture_radius, &camera->focus_distance};
+    for (int i = 0; i < 2 && scene_type_is(node, "thinlens"); ++i) {
+        if (!scene_property(node, names[i]))
+            return scene_fail(r, node, "thinlens without %s", names[i]);
+        if (!scene_get_float(r, node, names[i], values[i]))
+            return 0;
+        if (!(*values[i] > 0))
+            return scene_fail(r, scene_property(node, names[i]), "%s %g is not positive", names[i], *values[i]);
+    }
+    return 1;
+}
+
 static int read_sensor(struct reader *r, const struct node *node)
 {
     lc_camera_desc *camera = &r->desc->camera;
     struct node *film, *sampler;
     int seed = 0;
-    if (!read_lens(r, node, camera) || !scene_get_transform(r, node, "to_world", &camera->to_world))
+    if (!read_view(r, node, camera) || !read_lens(r, node, camera) ||
+        !scene_get_transform(r, node, "to_world", &camera->to_world))
         return 0;
     lc_vec3 x = lc_affine_vector(&camera->to_world, lc_vec(1, 0, 0));
     if (scene_dissimilarity(&camera->to_world) > 1e-6 || fabs(lc_length(x) - 1) > 1e-6 ||

@@ -159,6 +159,26 @@ static int read_conductor(struct reader *r, const struct node *node, struct flat
            scene_get_color(r, node, "specular_reflectance", 1, &out->side[0].mirror);
 }
 
+/* Only GGX, while Mitsuba's default is Beckmann. `sample_visible` is how Mitsuba draws, not what. Smoother than 0.01 a
+ * surface is better a conductor: the energy check would have to look very closely. */
+static int read_roughconductor(struct reader *r, const struct node *node, struct flat_material *out)
+{
+    static const char *const none[] = {"none"}, *const ggx[] = {"ggx"};
+    double alpha = .1;
+    int sample_visible = 1;
+    if (!scene_property(node, "distribution"))
+        return scene_fail(r, node, "roughconductor without distribution \"ggx\"; Mitsuba's default is beckmann");
+    out->side[0].glossy = lc_color(1, 1, 1);
+    if (scene_get_word(r, node, "material", none, 1) != 0 || scene_get_word(r, node, "distribution", ggx, 1) != 0 ||
+        !scene_get_color(r, node, "specular_reflectance", 1, &out->side[0].glossy) ||
+        !scene_get_float(r, node, "alpha", &alpha) || !scene_get_boolean(r, node, "sample_visible", &sample_visible))
+        return 0;
+    if (!(alpha >= .01 && alpha <= 1))
+        return scene_fail(r, node, "alpha %g; expected 0.01 to 1", alpha);
+    out->side[0].alpha = lc_rgb_max(out->side[0].glossy) > 0 ? alpha : 0;
+    return 1;
+}
+
 /* Mitsuba's own numbers. */
 static const struct {
     const char *name;
@@ -212,6 +232,18 @@ static int nested(struct reader *r, const struct node *node, struct flat_materia
 
 static int has_glass(const struct flat_material *m) { return m->side[0].glass > 0 || m->side[1].glass > 0; }
 
+/* The rough lobe of `side` += share times that of `other`; returns 0 where the two are not one lobe. */
+static int add_glossy(lc_side *side, const lc_side *other, double share)
+{
+    if (!(share * lc_rgb_max(other->glossy) > 0))
+        return 1;
+    if (lc_rgb_max(side->glossy) > 0 && side->alpha != other->alpha)
+        return 0;
+    side->glossy = lc_rgb_add(side->glossy, lc_rgb_scale(share, other->glossy));
+    side->alpha = other->alpha;
+    return 1;
+}
+
 /* The second BSDF has the weight, the first the rest. */
 static int read_blend(struct reader *r, const struct node *node, struct flat_material *out)
 {
@@ -236,6 +268,8 @@ static int read_blend(struct reader *r, const struct node *node, struct flat_mat
                 return scene_fail(r, node, "a blend of two checkerboards with different to_uv; a surface has one here");
             out->side[s].mirror = lc_rgb_add(out->side[s].mirror, lc_rgb_scale(share, child[i].side[s].mirror));
             out->side[s].glass += share * child[i].side[s].glass;
+            if (!add_glossy(&out->side[s], &child[i].side[s], share))
+                return scene_fail(r, node, "a blend of two roughconductors of different alpha; a surface has one here");
         }
     return 1;
 }
@@ -258,8 +292,8 @@ static const struct {
     const char *type;
     int (*read)(struct reader *r, const struct node *node, struct flat_material *out);
 } bsdfs[] = {
-    {"diffuse", read_diffuse}, {"conductor", read_conductor}, {"dielectric", read_dielectric},
-    {"blendbsdf", read_blend}, {"twosided", read_twosided},
+    {"diffuse", read_diffuse},       {"conductor", read_conductor}, {"roughconductor", read_roughconductor},
+    {"dielectric", read_dielectric}, {"blendbsdf", read_blend},     {"twosided", read_twosided},
 };
 
 /* Each is read once, however often it is referred to: else a chain of blends would take exponential time. */

@@ -23,9 +23,11 @@ enum { VALUE_TAGS = sizeof value_tags / sizeof value_tags[0] };
 
 static const char no_spectrum[] = " (Mitsuba tints an emitter's uniform <spectrum> with the colour of daylight)";
 static const char no_texture[] = " (a mirror has one colour here)";
+static const char no_alpha[] = " (a surface has one roughness here)";
 static const char no_weight[] = " (a blend has one weight here)";
 
 /* clang-format off */
+#define MOTION {"motion", POINT | VECTOR, NULL}
 #define TO_WORLD {"to_world", TRANSFORM, NULL}
 #define FLIP {"flip_normals", BOOLEAN, NULL}
 #define HIDE {"hide_emitters", BOOLEAN, NULL}
@@ -38,6 +40,16 @@ static const struct plugin plugins[] = {
     {"sensor",
      "perspective",
      {{"fov", NUMBER, NULL},
+      {"fov_axis", STRING, NULL},
+      {"near_clip", NUMBER, NULL},
+      {"far_clip", NUMBER, NULL},
+      TO_WORLD},
+     "film sampler"},
+    {"sensor",
+     "thinlens",
+     {{"aperture_radius", NUMBER, NULL},
+      {"focus_distance", NUMBER, NULL},
+      {"fov", NUMBER, NULL},
       {"fov_axis", STRING, NULL},
       {"near_clip", NUMBER, NULL},
       {"far_clip", NUMBER, NULL},
@@ -57,12 +69,23 @@ static const struct plugin plugins[] = {
     {"sampler", "multijitter", SAMPLER, ""},
     {"sampler", "orthogonal", SAMPLER, ""},
     {"sampler", "ldsampler", SAMPLER, ""},
-    {"shape", "rectangle", {TO_WORLD, FLIP}, "bsdf emitter"},
-    {"shape", "disk", {TO_WORLD, FLIP}, "bsdf emitter"},
-    {"shape", "cube", {TO_WORLD, FLIP}, "bsdf emitter"},
-    {"shape", "sphere", {{"center", POINT | VECTOR, NULL}, {"radius", NUMBER, NULL}, TO_WORLD, FLIP}, "bsdf emitter"},
+    {"shape", "rectangle", {TO_WORLD, FLIP, MOTION}, "bsdf emitter"},
+    {"shape", "disk", {TO_WORLD, FLIP, MOTION}, "bsdf emitter"},
+    {"shape", "cube", {TO_WORLD, FLIP, MOTION}, "bsdf emitter"},
+    {"shape",
+     "sphere",
+     {{"center", POINT | VECTOR, NULL}, {"radius", NUMBER, NULL}, TO_WORLD, FLIP, MOTION},
+     "bsdf emitter"},
     {"bsdf", "diffuse", {{"reflectance", COLOR | TEXTURE, NULL}}, ""},
     {"bsdf", "conductor", {{"material", STRING, NULL}, {"specular_reflectance", COLOR, no_texture}}, ""},
+    {"bsdf",
+     "roughconductor",
+     {{"material", STRING, NULL},
+      {"specular_reflectance", COLOR, no_texture},
+      {"distribution", STRING, NULL},
+      {"alpha", NUMBER, no_alpha},
+      {"sample_visible", BOOLEAN, NULL}},
+     ""},
     {"bsdf", "dielectric", {{"int_ior", FLOAT | STRING, NULL}, {"ext_ior", FLOAT | STRING, NULL}}, ""},
     {"bsdf", "blendbsdf", {{"weight", NUMBER, no_weight}}, "bsdf"},
     {"bsdf", "twosided", {{NULL, 0, NULL}}, "bsdf"},

@@ -22,7 +22,7 @@ enum {
     LIGHT = RGB | NUMBER             /* of an emitter */
 };
 
-enum { MAX_PROPERTIES = 5 };
+enum { MAX_PROPERTIES = 8 };
 
 struct property {
     const char *name;

@@ -139,6 +139,26 @@ lc_status lc_direct_irradiance(lc_rgb *out, const lc_scene_desc *desc, lc_vec3 p
  * hemisphere). */
 lc_status lc_direct_unoccluded(lc_rgb *out, const lc_scene_desc *desc, lc_vec3 p, lc_vec3 n, lc_error *err);
 
+/* Irradiance [W m^-2] at p with unit normal n of the front of shape `own_shape` by light that was scattered once, on another
+ * surface: int rho E(q) / pi cos cos' / d^2 dA(q), E(q) by lc_direct_irradiance(). Gauss and Legendre's product rule of
+ * LC_SECOND_NODES^2 nodes a surface, prepared once a scene. Holds where surfaces that reflect are one-sided rectangles of one colour,
+ * apart from each other by about their size or more, whole above each other's horizons, and nothing stands between them:
+ * LC_BAD_INPUT for other surfaces, the rest is up to the caller. Any thread once prepared. Source: Kajiya 1986, eq. 1,
+ * twice. */
+enum { LC_SECOND_NODES = 24 };
+typedef struct lc_second_node {
+    lc_vec3 p, n;
+    lc_rgb radiance; /* times the node's area [W sr^-1] */
+    int shape;
+} lc_second_node;
+typedef struct lc_second {
+    lc_second_node *nodes;
+    int count;
+} lc_second;
+lc_status lc_second_prepare(lc_second *out, const lc_scene_desc *desc, lc_error *err); /* empty after a failure */
+void lc_second_release(lc_second *second);
+lc_rgb lc_second_irradiance(const lc_second *second, int own_shape, lc_vec3 p, lc_vec3 n);
+
 /* ---- quadrature ------------------------------------------------------------------------------------------- */
 
 /* Integral of f over [a, b], a <= b, to max(absolute, relative |result|): GSL's doubly adaptive Clenshaw-Curtis rule

@@ -328,6 +328,10 @@ static void add_deltas(struct direct *direct)
 static lc_status direct_sum(lc_rgb *out, const lc_scene_desc *desc, lc_vec3 p, lc_vec3 n, int with_hiders,
                             lc_error *err)
 {
+    for (int i = 0; i < desc->shape_count; ++i)
+        if (lc_length(desc->shapes[i].motion) > 0)
+            return lc_fail(err, LC_BAD_INPUT, "%s:%d: the shape moves, expected all at rest", desc->name,
+                           desc->shapes[i].line);
     struct direct direct = {desc, lc_receiver_at(p, n), NULL, NULL, 0, {0, 0, 0}, err};
     lc_status status = LC_OK;
     lc_body sky = lc_body_sky();

@@ -29,6 +29,8 @@ typedef struct lc_share {
     double false_fail, false_pass; /* probability of each, for the whole row */
     double margin;                 /* relative: what PASS has to show */
     uint64_t seed;
+    uint32_t arm; /* the estimator's stream */
+    int threads;
 } lc_share;
 
 /* Fills verdict, numbers and reason of a row whose names are there already. An error is one of ours, not a verdict. */
@@ -41,21 +43,31 @@ typedef struct lc_claim {
     const lc_estimator *estimator;
     int min_bounces, max_bounces;
     const lc_estimator *other; /* ... that of this one, or where NULL */
+    lc_term term[LC_MAX_TERMS]; /* ... the sum of its own over these scenes, if any: a relation; or */
+    int term_count;
     lc_expect_fn *expect;      /* ... these values */
     int exact;                 /* 1: sample by sample, no statistics; `other` then draws the same numbers */
     int may_be_still;   /* declared: an estimator may have no variance here, and is then held to the values exactly */
     int full_only;    /* 1: for the full suite only: too dear for the quick one, or told by another of its rows */
     double tolerance;   /* error of the expected values, relative to their mean; a difference below it is none */
+    /* Of relations. The claims own the scenes of the terms. */
+    const char *relation; /* its name, shown behind the scene's */
+    int paired;           /* 1: the terms draw the same numbers; differences are tested sample by sample, and where all
+                             agree to `tolerance`, that is it. 0: one term of factor 1, which draws others */
+    int whole_only;       /* 1: about the mean of the whole image, not about its pixels */
+    double slack;         /* the margin is this multiple of the run's; 0: 1 */
     double margin;      /* relative; 0: the run's. A wider one than the run's holds: nothing is shown closer than `tolerance` */
     const char *source; /* of what is expected, in words */
-    /* About the host: no scene and no estimator, but */
-    lc_decide_fn *decide; /* this; else NULL */
-    const char *subject;  /* what it is about: shown in the scene's place */
+    /* A claim that is not about a mean is decided by */
+    lc_decide_fn *decide; /* this; else NULL. Without a scene and an estimator it is about the host: */
+    const char *subject;  /* what of it, shown in the scene's place */
 } lc_claim;
 
 typedef struct lc_claims {
     lc_claim *items;
     int count;
+    lc_scene **scenes; /* made for them, by the name of the description */
+    int scene_count;
 } lc_claims;
 
 typedef struct lc_check {
@@ -69,9 +81,21 @@ typedef struct lc_check {
 
 extern const lc_check *const lc_checks[]; /* ends with NULL */
 
+/* Direct light in closed form, over a scene whose lamps the analytic check knows. */
+lc_expect_fn lc_expect_direct;
+/* The light inside a sphere of any emission and albedo. */
+lc_expect_fn lc_expect_inside;
+
+/* 0 where POV-Ray renders the scene for the check of that name; else 1, and why it does not, in words. */
+int lc_povray_excuse(lc_error *why, const lc_scene *scene);
+
 /* Appends a claim of `check` with bounces 1 to 1; NULL without memory. */
 lc_claim *lc_claims_add(lc_claims *claims, const lc_check *check, const lc_scene *scene, const lc_estimator *estimator);
 void lc_claims_release(lc_claims *claims);
+/* The scene of that name among those made for claims, or NULL. */
+const lc_scene *lc_claims_scene(const lc_claims *claims, const char *name);
+/* Builds one more, which is released with the claims. */
+lc_status lc_claims_build(const lc_scene **out, lc_claims *claims, const lc_scene_desc *desc, lc_error *err);
 
 /* What `estimator` may see of `scene`: its lobes and emitters, restricted to those that occur. Two estimators estimate the same integral where
  * both agree (and the bounces do). */

@@ -15,12 +15,14 @@ const lc_bsdf_functions lc_bsdf_host = {lc_bsdf_eval, lc_bsdf_pdf, lc_bsdf_sampl
 /* ---- materials -------------------------------------------------------------------------------------------------- */
 
 /* Albedo [side][cell], of which a plain side has the first only; reflectance [side]; glass has no sides. An index that
- * is not given is 1. */
+ * is not given is 1. A rough lobe of one roughness has both sides, or the front. */
 typedef struct material {
     const char *name;
     int is_checkered[2];
     lc_rgb diffuse[2][2], mirror[2];
     double glass, int_ior, ext_ior;
+    lc_rgb glossy[2];
+    double alpha;
 } material;
 
 static const material materials[] = {
@@ -45,6 +47,15 @@ static const material materials[] = {
      .mirror = {{0.3, 0.28, 0.25}, {0.2, 0.2, 0.3}},
      .glass = 0.4,
      .int_ior = 1.5},
+    {.name = "glossy_0.01", .glossy = {{1, 1, 1}}, .alpha = 0.01},
+    {.name = "glossy_0.05", .glossy = {{1, 1, 1}, {1, 1, 1}}, .alpha = 0.05},
+    {.name = "glossy_0.3", .glossy = {{0.9, 0.5, 0.2}, {0.2, 0.8, 0.3}}, .alpha = 0.3},
+    {.name = "glossy_1.0", .glossy = {{1, 1, 1}}, .alpha = 1},
+    {.name = "glossy_blend",
+     .diffuse = {{{0.3, 0.2, 0.1}}},
+     .mirror = {{0.2, 0.1, 0.1}, {0.2, 0.2, 0.3}},
+     .glossy = {{0.4, 0.3, 0.4}},
+     .alpha = 0.25},
 };
 enum { MATERIALS = sizeof materials / sizeof materials[0] };
 
@@ -61,6 +72,8 @@ static void describe(lc_material_desc *out, const material *m)
         out->side[side].diffuse.is_checkerboard = m->is_checkered[side];
         out->side[side].mirror = m->mirror[side];
         out->side[side].glass = m->glass;
+        out->side[side].glossy = m->glossy[side];
+        out->side[side].alpha = lc_rgb_max(m->glossy[side]) > 0 ? m->alpha : 0;
     }
     out->int_ior = index_of(m->int_ior);
     out->ext_ior = index_of(m->ext_ior);
@@ -111,6 +124,8 @@ static lc_status set_stage(lc_stage *stage, const material *m, int back, int cel
     stage->diffuse = m->diffuse[back][m->is_checkered[back] ? cell : 0];
     stage->mirror = m->mirror[back];
     stage->glass = m->glass;
+    stage->glossy = m->glossy[back];
+    stage->alpha = lc_rgb_max(m->glossy[back]) > 0 ? m->alpha : 0;
     stage->ior = index_of(back ? m->ext_ior : m->int_ior) / index_of(back ? m->int_ior : m->ext_ior);
     return LC_OK;
 }

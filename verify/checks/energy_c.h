@@ -15,17 +15,20 @@ typedef struct lc_stage {
     lc_vec3 s, t, n;        /* right-handed; n on the viewer's side */
     const char *side;       /* "front", "back" */
     lc_rgb diffuse, mirror; /* what the table says: albedo and reflectance seen from here, */
-    double glass, ior;      /* share of the glass lobe, index beyond / index here */
+    double glass, ior;      /* share of the glass lobe, index beyond / index here, */
+    lc_rgb glossy;          /* reflectance of the rough lobe's facets */
+    double alpha;           /* and their roughness, 0 where there are none */
 } lc_stage;
 
-/* Ways on from a hit. All samples of a delta way are alike. */
-enum { LC_WAY_DIFFUSE, LC_WAY_MIRROR, LC_WAY_REFLECTED, LC_WAY_TRANSMITTED, LC_WAYS };
+/* Ways on from a hit: diffuse and glossy are one. All samples of a delta way are alike. */
+enum { LC_WAY_FINITE, LC_WAY_MIRROR, LC_WAY_REFLECTED, LC_WAY_TRANSMITTED, LC_WAYS };
 
 typedef struct lc_ways {
     lc_scatter way[LC_WAYS];
     int seen[LC_WAYS];
     int absorbed;  /* 1: sample() returned 0 */
-    double finite; /* integral of pdf() over the sphere */
+    double finite; /* integral of pdf() over the sphere, */
+    lc_rgb albedo; /* and of f |cos| */
 } lc_ways;
 
 /* What an error is blamed on, before the numbers. */
@@ -46,6 +49,19 @@ int lc_stage_fail(const lc_stage *stage, const lc_hit *hit, const char *format, 
     __attribute__((format(printf, 3, 4)))
 #endif
     ;
+
+/* Tolerance of integrals, relative to the largest. */
+double lc_stage_rounding(const lc_stage *stage);
+/* Reflected by the rough lobe of what comes along wo, by its closed form. Returns 0 after a FAIL. */
+int lc_stage_glossy_albedo(double *albedo, const lc_stage *stage, const lc_hit *hit);
+
+/* Integrals over the sphere of pdf() and of f |cos| in each channel, where there is a rough lobe; 0 after a FAIL. */
+int lc_glossy_integrals(double out[4], const lc_stage *stage, const lc_hit *hit);
+/* Cells of directions by the facet that leads there, the last one where none does: the cell of wi, the probability of
+ * each by pdf(); 0 after a FAIL. */
+enum { LC_GLOSSY_CELLS = 65 };
+int lc_glossy_cell_of(const lc_stage *stage, const lc_hit *hit, lc_vec3 wi);
+int lc_glossy_cells(double probability[LC_GLOSSY_CELLS], const lc_stage *stage, const lc_hit *hit);
 
 /* All ways on from the hit, by numbers that cover [0, 1) evenly; each sample is compared with pdf() and eval().
  * Returns 0 after a FAIL. */

@@ -2,12 +2,16 @@
  *
  * energy, the part without chance: integrals by quadrature, and every way on that sample() knows.
  */
-#include "verify/analytic/analytic.h"
+#include "verify/analytic/effects.h"
 #include "verify/checks/energy_c.h"
 
 /* Of closed forms computed in doubles; a direction and its way back differ by more at grazing angles. */
 #define ROUNDING 1e-10
 #define ROUNDING_BACK 1e-7
+/* Of quadrature over a rough lobe. */
+#define ROUNDING_GLOSSY 1e-7
+
+double lc_stage_rounding(const lc_stage *stage) { return stage->alpha > 0 ? ROUNDING_GLOSSY : ROUNDING; }
 
 /* A way rarer than this may escape the numbers that cover [0, 1), and is then left out of the sums. */
 #define RARE 1e-3
@@ -22,8 +26,8 @@ static lc_vec3 direction(const lc_stage *stage, double mu, double azimuth)
                   lc_add(lc_scale(sine * cos(azimuth), stage->s), lc_scale(sine * sin(azimuth), stage->t)));
 }
 
-/* Nodes and weights of Gauss and Legendre on [0, 1], exact to degree 7: the finite lobes are polynomials in mu,
- * constant in azimuth. */
+/* Nodes and weights of Gauss and Legendre on [0, 1], exact to degree 7: Lambert's lobe is a polynomial in mu, constant
+ * in azimuth. Rough ones are for energy_glossy.c. */
 static const double nodes[4] = {0.069431844202973712, 0.33000947820757187, 0.66999052179242813, 0.93056815579702629};
 static const double weights[4] = {0.17392742256872693, 0.32607257743127307, 0.32607257743127307, 0.17392742256872693};
 
@@ -60,15 +64,42 @@ static double finite_probability(const lc_stage *stage, const lc_hit *hit)
     return sum;
 }
 
+/* Both at once, by the rule that suits the surface. */
+static int integrate_finite(lc_ways *out, const lc_stage *stage, const lc_hit *hit)
+{
+    double all[4];
+    if (!(stage->alpha > 0)) {
+        out->finite = finite_probability(stage, hit);
+        out->albedo = finite_albedo(stage, hit);
+        return 1;
+    }
+    if (!lc_glossy_integrals(all, stage, hit))
+        return 0;
+    out->finite = all[0];
+    out->albedo = lc_color(all[1], all[2], all[3]);
+    return 1;
+}
+
+int lc_stage_glossy_albedo(double *albedo, const lc_stage *stage, const lc_hit *hit)
+{
+    lc_error err = {""};
+    *albedo = 0;
+    if (!(stage->alpha > 0))
+        return 1;
+    return lc_ggx_albedo(albedo, fmin(1, lc_dot(stage->n, hit->wo)), stage->alpha, &err) == LC_OK ||
+           lc_stage_fail(stage, hit, "no closed form: %.200s", err.text);
+}
+
 /* ---- ways ------------------------------------------------------------------------------------------------------- */
 
 int lc_way_of(const lc_scatter *sample, const lc_hit *hit)
 {
-    if (sample->is_delta != (sample->lobe != LC_DIFFUSE))
+    if (sample->is_delta != (sample->lobe != LC_DIFFUSE && sample->lobe != LC_GLOSSY))
         return -1;
     switch (sample->lobe) {
     case LC_DIFFUSE:
-        return LC_WAY_DIFFUSE;
+    case LC_GLOSSY:
+        return LC_WAY_FINITE;
     case LC_MIRROR:
         return LC_WAY_MIRROR;
     case LC_GLASS:
@@ -112,11 +143,12 @@ static int compare_sample(lc_ways *ways, const lc_stage *stage, const lc_hit *hi
         return 0;
     if (!(sample->pdf > 0))
         return lc_stage_fail(stage, hit, "sample() returns a pdf of %g for what it picked", sample->pdf);
-    if (way == LC_WAY_DIFFUSE) {
+    if (way == LC_WAY_FINITE) {
         double pdf = stage->bsdf->pdf(stage->scene, hit, sample->wi);
         if (fabs(sample->pdf - pdf) > ROUNDING * pdf)
             return lc_stage_fail(stage, hit, "sample()'s pdf is %.9g, pdf() says %.9g 1/sr", sample->pdf, pdf);
-        if (!(distance(sample->value, stage->bsdf->eval(stage->scene, hit, sample->wi)) <= ROUNDING))
+        lc_rgb value = stage->bsdf->eval(stage->scene, hit, sample->wi);
+        if (!(distance(sample->value, value) <= ROUNDING * fmax(1, lc_rgb_max(value))))
             return lc_stage_fail(stage, hit, "sample()'s value is not that of eval()");
     } else if (ways->seen[way]) {
         const lc_scatter *first = &ways->way[way];
@@ -143,9 +175,10 @@ int lc_stage_ways(lc_ways *out, const lc_stage *stage, const lc_hit *hit)
 {
     static const lc_ways none;
     *out = none;
-    out->finite = finite_probability(stage, hit);
+    if (!integrate_finite(out, stage, hit))
+        return 0;
     for (uint32_t k = 0; k < MOST_TRIES; ++k) {
-        if (k >= LEAST_TRIES && fabs(probability(out) - 1) <= ROUNDING)
+        if (k >= LEAST_TRIES && fabs(probability(out) - 1) <= lc_stage_rounding(stage))
             break;
         /* Both ends first: the rarest way may be the last. */
         double choice = k == 0 ? 1 - 0x1p-32 : mirrored(k - 1, 2);
@@ -162,14 +195,18 @@ int lc_stage_ways(lc_ways *out, const lc_stage *stage, const lc_hit *hit)
 /* ---- closed forms ----------------------------------------------------------------------------------------------- */
 
 /* Light sent back by each way, of the light that comes along wo: fluxes, so nothing of ior^2. */
-static void closed_forms(lc_rgb flux[LC_WAYS], const lc_stage *stage, const lc_hit *hit)
+static int closed_forms(lc_rgb flux[LC_WAYS], const lc_stage *stage, const lc_hit *hit)
 {
+    double glossy;
+    if (!lc_stage_glossy_albedo(&glossy, stage, hit))
+        return 0;
     double fresnel = lc_fresnel_dielectric(fmin(1, lc_dot(stage->n, hit->wo)), stage->ior);
     double reflected = stage->glass * fresnel, transmitted = stage->glass * (1 - fresnel);
-    flux[LC_WAY_DIFFUSE] = stage->diffuse;
+    flux[LC_WAY_FINITE] = lc_rgb_add(stage->diffuse, lc_rgb_scale(glossy, stage->glossy));
     flux[LC_WAY_MIRROR] = stage->mirror;
     flux[LC_WAY_REFLECTED] = lc_color(reflected, reflected, reflected);
     flux[LC_WAY_TRANSMITTED] = lc_color(transmitted, transmitted, transmitted);
+    return 1;
 }
 
 /* Radiance along wo over radiance from wi, made the share of light: L / n^2 is what stays. */
@@ -215,7 +252,7 @@ static int sums(const lc_ways *ways, const lc_rgb flux[LC_WAYS], const lc_stage 
 {
     static const char *const names[3] = {"the directional albedo (R)", "the directional albedo (G)",
                                          "the directional albedo (B)"};
-    lc_rgb albedo = finite_albedo(stage, hit), should = lc_black();
+    lc_rgb albedo = ways->albedo, should = lc_black();
     double all = 0, unseen = 0;
     for (int w = 0; w < LC_WAYS; ++w) {
         all += lc_rgb_max(flux[w]);
@@ -226,13 +263,14 @@ static int sums(const lc_ways *ways, const lc_rgb flux[LC_WAYS], const lc_stage 
     }
     double rare = unseen < RARE * all && !ways->absorbed ? unseen : 0;
     for (int c = 0; c < 3; ++c)
-        if (!lc_stage_expect(stage, hit, names[c], lc_channel(albedo, c), lc_channel(should, c), ROUNDING + rare))
+        if (!lc_stage_expect(stage, hit, names[c], lc_channel(albedo, c), lc_channel(should, c),
+                             lc_stage_rounding(stage) + rare))
             return 0;
     if (all == 0)
         return lc_stage_expect(stage, hit, LC_SAY_SUM, probability(ways), 0, 0);
     if (ways->absorbed)
         return lc_stage_fail(stage, hit, "sample() returns 0 (absorbed), though the surface reflects %.6g", all);
-    return lc_stage_expect(stage, hit, LC_SAY_SUM, probability(ways), 1, ROUNDING + rare / all);
+    return lc_stage_expect(stage, hit, LC_SAY_SUM, probability(ways), 1, lc_stage_rounding(stage) + rare / all);
 }
 
 /* ---- reciprocity ------------------------------------------------------------------------------------------------ */
@@ -294,8 +332,7 @@ static int closed_forms_at(const lc_stage *stage, double cosine, double azimuth)
     lc_hit hit = lc_stage_seen(stage, cosine, azimuth);
     lc_rgb flux[LC_WAYS];
     lc_ways ways;
-    closed_forms(flux, stage, &hit);
-    return finite_reciprocity(stage, &hit) && lc_stage_ways(&ways, stage, &hit) &&
+    return closed_forms(flux, stage, &hit) && finite_reciprocity(stage, &hit) && lc_stage_ways(&ways, stage, &hit) &&
            delta_ways(&ways, flux, stage, &hit) && sums(&ways, flux, stage, &hit);
 }
 
@@ -303,18 +340,21 @@ static int way_back_at(const lc_stage *stage, double cosine, double azimuth)
 {
     lc_hit hit = lc_stage_seen(stage, cosine, azimuth);
     lc_ways ways;
+    if (stage->glass == 0 && lc_rgb_max(stage->mirror) == 0)
+        return 1; /* that there is none was shown: the finite lobes take the whole probability */
     return lc_stage_ways(&ways, stage, &hit) && delta_reciprocity(&ways, stage, &hit);
 }
 
 /* From every side: a grid of cosines, both ends, and just above and below the critical angle. */
 static int at_all(at_fn *at, const lc_stage *stage)
 {
-    enum { STEPS = 48, ENDS = 6, EDGES = 4 };
+    enum { ENDS = 6, EDGES = 4 };
+    int steps = stage->alpha > 0 ? 16 : 48; /* adaptive quadrature is dear */
     static const double ends[ENDS] = {1, 0.9999, 0.01, 1e-3, 1e-4, 1e-6};
     static const double edges[EDGES] = {1e-6, -1e-6, 1e-2, -1e-2};
     double azimuth = 0.3;
-    for (int k = 0; k < STEPS + ENDS; ++k, azimuth += 2.39996322972865332)
-        if (!at(stage, k < STEPS ? (k + 0.5) / STEPS : ends[k - STEPS], azimuth))
+    for (int k = 0; k < steps + ENDS; ++k, azimuth += 2.39996322972865332)
+        if (!at(stage, k < steps ? (k + 0.5) / steps : ends[k - steps], azimuth))
             return 0;
     if (!(stage->glass > 0 && stage->ior < 1))
         return 1;

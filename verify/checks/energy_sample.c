@@ -7,7 +7,8 @@
 #include "verify/checks/energy_c.h"
 #include "verify/stats/stats.h"
 
-/* Cells of equal probability under a cosine: rings of mu^2, sectors of azimuth, on either side of the surface. */
+/* Cells of equal probability under a cosine: rings of mu^2, sectors of azimuth, on either side of the surface. Where there is a rough
+ * lobe, its own cells take their place. */
 enum { RINGS = 8, SECTORS = 8, SIDE = RINGS * SECTORS, CELLS = 2 * SIDE + LC_WAYS };
 
 /* Where the viewer stands, from grazing to upright. */
@@ -33,8 +34,10 @@ static int ring_of(double mu) { return (int)fmin(RINGS - 1, mu * mu * RINGS); }
 static int cell_of(const lc_stage *stage, const lc_hit *hit, const lc_scatter *sample)
 {
     int way = lc_way_of(sample, hit);
-    if (way != LC_WAY_DIFFUSE)
+    if (way != LC_WAY_FINITE)
         return way < 0 ? 2 * SIDE : 2 * SIDE + way;
+    if (stage->alpha > 0)
+        return lc_glossy_cell_of(stage, hit, sample->wi);
     double mu = lc_dot(stage->n, sample->wi);
     double azimuth = atan2(lc_dot(stage->t, sample->wi), lc_dot(stage->s, sample->wi));
     int sector = (int)fmin(SECTORS - 1, (azimuth + LC_PI) / (2 * LC_PI) * SECTORS);
@@ -43,10 +46,15 @@ static int cell_of(const lc_stage *stage, const lc_hit *hit, const lc_scatter *s
 
 /* From pdf() by quadrature, and from the probabilities of the delta lobes; way 0 holds what contradicts itself, and
  * expects nothing. */
-static void expect_cells(double expected[CELLS], const lc_stage *stage, const lc_hit *hit, const lc_ways *ways,
+static int expect_cells(double expected[CELLS], const lc_stage *stage, const lc_hit *hit, const lc_ways *ways,
                          double n)
 {
-    for (int i = 0; i < 2 * SIDE; ++i) {
+    double probability[LC_GLOSSY_CELLS];
+    if (stage->alpha > 0 && !lc_glossy_cells(probability, stage, hit))
+        return 0;
+    for (int i = 0; i < LC_GLOSSY_CELLS && stage->alpha > 0; ++i)
+        expected[i] = n * probability[i];
+    for (int i = 0; i < 2 * SIDE && !(stage->alpha > 0); ++i) {
         int ring = i % SIDE / SECTORS, sector = i % SECTORS;
         double low = sqrt(ring / (double)RINGS), high = sqrt((ring + 1) / (double)RINGS);
         double phi = 2 * LC_PI / SECTORS * sector - LC_PI;
@@ -56,6 +64,7 @@ static void expect_cells(double expected[CELLS], const lc_stage *stage, const lc
     expected[2 * SIDE] = 0;
     for (int w = LC_WAY_MIRROR; w < LC_WAYS; ++w)
         expected[2 * SIDE + w] = ways->seen[w] ? n * ways->way[w].pdf : 0;
+    return 1;
 }
 
 /* What a sample contributes to the light sent back. */
@@ -128,13 +137,14 @@ static int follows_pdf(const lc_stage *stage, const lc_hit *hit, const counts *c
                          views, test.statistic, test.df, test.log_p / log(10.0));
 }
 
-/* The mean over all views against the closed form. Bernstein's bound after Maurer and Pontil knows no variance
- * beforehand and no shape, and wants independent samples, not identically distributed ones. */
-static int mean_is_albedo(const lc_stage *stage, const lc_hit *hit, const means *m, double most, double alpha_fail,
-                          double alpha_pass, double margin)
+/* The mean over all views against the closed form; `glossy`: that of the rough lobe, mean over the views. Bernstein's
+ * bound after Maurer and Pontil knows no variance beforehand and no shape, and wants independent samples, not identically distributed ones. */
+static int mean_is_albedo(const lc_stage *stage, const lc_hit *hit, const means *m, double glossy, double most,
+                          double alpha_fail, double alpha_pass, double margin)
 {
     lc_rgb albedo = lc_color(stage->glass, stage->glass, stage->glass);
     albedo = lc_rgb_add(albedo, lc_rgb_add(stage->diffuse, stage->mirror));
+    albedo = lc_rgb_add(albedo, lc_rgb_scale(glossy, stage->glossy));
     double scale = lc_rgb_max(albedo);
     lc_row *row = stage->row;
     for (int c = 0; c < 3; ++c) {
@@ -164,19 +174,20 @@ static int mean_is_albedo(const lc_stage *stage, const lc_hit *hit, const means 
     return 1;
 }
 
-/* 2^15 a view where the margin is 0.5%, more for a narrower one. */
-static uint64_t samples_of(double margin)
+/* 2^15 a view where the margin is 0.5%, more for a narrower one, and for the light that very rough facets lose. */
+static uint64_t samples_of(const lc_stage *stage, double margin)
 {
-    double n = 32768 * (0.005 / margin) * (0.005 / margin);
+    double n = (stage->alpha > 0.5 ? 8 : 1) * 32768 * (0.005 / margin) * (0.005 / margin);
     return (uint64_t)fmin(fmax(n, 4096), 4194304);
 }
 
 int lc_energy_sample(const lc_stage *stage, int index, int stages, const lc_share *share)
 {
-    double most = lc_rgb_max(stage->diffuse) + lc_rgb_max(stage->mirror) + stage->glass;
+    double most = lc_rgb_max(stage->diffuse) + lc_rgb_max(stage->glossy) + lc_rgb_max(stage->mirror) + stage->glass;
+    double glossy = 0;
     if (most == 0)
         return 1; /* black, as was shown exactly */
-    uint64_t n = samples_of(share->margin);
+    uint64_t n = samples_of(stage, share->margin);
     /* Half for the chi-squares (one a view, one of all), half for the means. */
     double alpha_follow = 0.5 * share->false_fail / (stages * (VIEWS + 1));
     double alpha_mean = 0.5 * share->false_fail / (stages * 3);
@@ -188,12 +199,14 @@ int lc_energy_sample(const lc_stage *stage, int index, int stages, const lc_shar
     for (int v = 0; v < VIEWS; ++v) {
         counts one;
         lc_ways ways;
+        double albedo;
         hit = lc_stage_seen(stage, cosines[v], 0.7 + 2.39996322972865332 * v);
-        if (!lc_stage_ways(&ways, stage, &hit))
+        if (!lc_stage_ways(&ways, stage, &hit) || !lc_stage_glossy_albedo(&albedo, stage, &hit))
             return 0;
+        glossy += albedo / VIEWS;
         memset(&one, 0, sizeof one);
-        expect_cells(one.expected, stage, &hit, &ways, (double)n);
-        if (!draw(&one, &m, stage, &hit, n, most, share->seed, (uint32_t)(index * VIEWS + v)) ||
+        if (!expect_cells(one.expected, stage, &hit, &ways, (double)n) ||
+            !draw(&one, &m, stage, &hit, n, most, share->seed, (uint32_t)(index * VIEWS + v)) ||
             !follows_pdf(stage, &hit, &one, alpha_follow, ""))
             return 0;
         for (int i = 0; i < CELLS; ++i)
@@ -202,5 +215,5 @@ int lc_energy_sample(const lc_stage *stage, int index, int stages, const lc_shar
     stage->row->samples = n;
     stage->row->paths += VIEWS * n;
     return follows_pdf(stage, &hit, &all, alpha_follow, " over all views") &&
-           mean_is_albedo(stage, &hit, &m, most, alpha_mean, share->false_pass, share->margin);
+           mean_is_albedo(stage, &hit, &m, glossy, most, alpha_mean, share->false_pass, share->margin);
 }

@@ -10,6 +10,7 @@
 
 #include "verify/analytic/analytic.h"
 #include "verify/checks/checks.h"
+#include "verify/checks/family.h"
 
 static lc_status inside_view(lc_rgb *value, int *kind, const lc_scene *scene, const lc_hit *hit, void *user,
                              lc_error *err)
@@ -24,7 +25,7 @@ static lc_status inside_view(lc_rgb *value, int *kind, const lc_scene *scene, co
     return LC_OK;
 }
 
-static lc_status expect_inside(lc_expected *out, const lc_claim *claim, const lc_scene *scene, int threads,
+lc_status lc_expect_inside(lc_expected *out, const lc_claim *claim, const lc_scene *scene, int threads,
                                lc_error *err)
 {
     const lc_scene_desc *desc = lc_scene_description(scene);
@@ -58,6 +59,62 @@ static lc_status expect_thermal(lc_expected *out, const lc_claim *claim, const l
     return lc_expect_view(out, thermal_view, NULL, scene, claim->tolerance, threads, err);
 }
 
+/* Infinite plates: the first two shapes; what a plate does not emit itself was reflected. */
+static lc_status plates_view(lc_rgb *value, int *kind, const lc_scene *scene, const lc_hit *hit, void *user,
+                             lc_error *err)
+{
+    const lc_scene_desc *desc = lc_scene_description(scene);
+    (void)user;
+    /* A mirror shows a plate, as bright as the plate itself, which it is not worth following to find out which. */
+    *kind = hit->valid ? hit->shape : -1;
+    if (!hit->valid)
+        return lc_fail(err, LC_FAULT, "%s: a camera ray left the closed room", desc->name);
+    if (!value)
+        return LC_OK;
+    double rgb[3];
+    int own = hit->shape == 0 ? 0 : 1;
+    const lc_shape_desc *a = &desc->shapes[own], *b = &desc->shapes[1 - own];
+    const lc_rgb le[2] = {a->radiance.color[0], b->radiance.color[0]};
+    const lc_rgb rho[2] = {desc->materials[a->material].side[0].diffuse.color[0],
+                           desc->materials[b->material].side[0].diffuse.color[0]};
+    rgb[0] = lc_parallel_plates_radiance(le[0].r, rho[0].r, le[1].r, rho[1].r, LC_ALL_REFLECTIONS) - le[0].r;
+    rgb[1] = lc_parallel_plates_radiance(le[0].g, rho[0].g, le[1].g, rho[1].g, LC_ALL_REFLECTIONS) - le[0].g;
+    rgb[2] = lc_parallel_plates_radiance(le[0].b, rho[0].b, le[1].b, rho[1].b, LC_ALL_REFLECTIONS) - le[0].b;
+    *value = lc_color(rgb[0], rgb[1], rgb[2]);
+    return LC_OK;
+}
+
+/* Pixels that see a mirror are left out. */
+static lc_status expect_plates(lc_expected *out, const lc_claim *claim, const lc_scene *scene, int threads,
+                               lc_error *err)
+{
+    const lc_camera_desc *camera = &lc_scene_description(scene)->camera;
+    lc_status status = lc_expect_view(out, plates_view, NULL, scene, claim->tolerance, threads, err);
+    for (int i = 0; i < out->width * out->height && status == LC_OK; ++i) {
+        lc_ray ray = lc_camera_ray(camera, out->width, out->height, i % out->width + 0.5, i / out->width + 0.5);
+        lc_hit hit;
+        lc_camera_see(scene, &ray, &hit);
+        if (hit.shape > 1)
+            out->skip[i] = 1, out->rgb[3 * i] = out->rgb[3 * i + 1] = out->rgb[3 * i + 2] = 0;
+    }
+    return status;
+}
+
+/* A cube of 4 m and 10 000 lm, CIE 171:2006, case 5.8: the mean over the image is the mean over a wall. */
+static lc_status expect_enclosure(lc_expected *out, const lc_claim *claim, const lc_scene *scene, int threads,
+                                  lc_error *err)
+{
+    const lc_scene_desc *desc = lc_scene_description(scene);
+    lc_rgb rho = desc->materials[desc->shapes[0].material].side[0].diffuse.color[0];
+    double irradiance =
+        lc_closed_mean_irradiance(10000, 96, rho.r, claim->max_bounces > 1 ? LC_ALL_REFLECTIONS : 1);
+    (void)threads;
+    (void)err;
+    for (int i = 0; i < 3 * out->width * out->height; ++i)
+        out->rgb[i] = lc_lambert_reflected(rho.r, irradiance);
+    return LC_OK;
+}
+
 static lc_status add(lc_claim **out, lc_claims *claims, const lc_check *self, const lc_scene *scene,
                      const lc_estimator *estimator, int bounces, lc_error *err)
 {
@@ -72,21 +129,47 @@ static lc_status plan_inside(const lc_check *self, lc_claims *claims, const lc_s
                              const lc_estimator *estimator, lc_error *err)
 {
     int varies = lc_scene_description(scene)->shapes[0].radiance.is_checkerboard;
+    int is_plain = (estimator->lobes & (LC_MIRROR | LC_GLASS)) == 0;
+    int is_drawn = lc_family_find(lc_scene_description(scene)->name) != NULL;
     for (int k = 1; k <= 8 && k <= estimator->max_bounces; ++k) {
         lc_claim *claim;
+        /* Among diffuse walls mirror and dielectric are path once more: some depths are enough. */
+        if (!is_drawn && !is_plain && (k == 3 || k == 4 || k == 6 || k == 7))
+            continue;
+        if (is_drawn && k != (estimator->max_bounces > 1 ? 3 : 1) && (k != 6 || !is_plain))
+            continue;
         lc_status status = add(&claim, claims, self, scene, estimator, k, err);
         if (status != LC_OK)
             return status;
-        claim->expect = expect_inside;
+        claim->expect = lc_expect_inside;
         claim->tolerance = 1e-9;
-        claim->may_be_still = !varies && k == 1; /* the kernel is constant */
+        claim->may_be_still = !varies; /* the kernel is constant: cosine weights leave no variance */
         /* Checkerboards are looked up at every bounce: only path tracers of one lobe pay for that in the quick suite. */
-        int is_plain = estimator->lobes == LC_DIFFUSE;
-        claim->full_only = estimator->max_bounces > 1 && !(varies ? is_plain && (k == 4 || k == 8) : k == 2 || k == 5);
+        claim->full_only = estimator->max_bounces > 1 && !(is_drawn ? is_plain && k == 3
+                                                              : varies   ? is_plain && (k == 4 || k == 8)
+                                                                         : k == 5 || (is_plain && k == 2));
+        claim->slack = is_drawn ? 2 : 1;
         claim->source = "inside of a sphere: rho(x) <Le> (1 + <rho> + ... + <rho>^(K-1))";
     }
     return LC_OK;
 }
+
+/* Rooms of one row each. */
+static const struct room {
+    const char *scene;
+    lc_expect_fn *expect;
+    int bounces;
+    double tolerance; /* of what later bounces add */
+    int whole_only, full_only;
+    double slack;
+    const char *source;
+} rooms[] = {
+    /* L0 (1 - rho_max^25) <= L <= L0, and a few more bounces spent inside the glass */
+    {"thermal_furnace", expect_thermal, 24, 1e-5, 0, 0, 1, "thermal furnace: L = L0 on every surface (second law)"},
+    {"parallel_plates", expect_plates, 20, 2e-5, 0, 1, 4, "infinite plates: L1 = (Le1 + rho1 Le2) / (1 - rho1 rho2)"},
+    {"enclosure", expect_enclosure, 24, 1e-5, 1, 1, 4, "mean E = Phi / (S (1 - rho)) = 208.33 lx, CIE 171 case 5.8"},
+    {"enclosure_point", expect_enclosure, 1, 1e-9, 1, 0, 1, "mean E = Phi / S = 104.17 lx, CIE 171 case 5.8"},
+};
 
 static lc_status plan(const lc_check *self, lc_claims *claims, const lc_scene *scene, const lc_estimator *estimator,
                       lc_error *err)
@@ -94,24 +177,31 @@ static lc_status plan(const lc_check *self, lc_claims *claims, const lc_scene *s
     const char *name = lc_scene_description(scene)->name;
     if (!lc_sees_everything(scene, estimator) || estimator->max_bounces < 1)
         return LC_OK;
-    if (strcmp(name, "furnace_sphere") == 0 || strcmp(name, "furnace_checker") == 0)
+    if (strcmp(name, "furnace_sphere") == 0 || strcmp(name, "furnace_checker") == 0 ||
+        strcmp(name, "random_furnace") == 0)
         return plan_inside(self, claims, scene, estimator, err);
-    if (strcmp(name, "thermal_furnace") != 0 || estimator->max_bounces < 24)
-        return LC_OK;
-    lc_claim *claim;
-    lc_status status = add(&claim, claims, self, scene, estimator, 24, err);
-    if (status != LC_OK)
-        return status;
-    claim->expect = expect_thermal;
-    claim->tolerance = 1e-5; /* L0 (1 - rho_max^25) <= L <= L0, and a few more bounces spent inside the glass */
-    claim->source = "thermal furnace: L = L0 on every surface (second law)";
+    for (size_t i = 0; i < sizeof rooms / sizeof rooms[0]; ++i) {
+        const struct room *room = &rooms[i];
+        lc_claim *claim;
+        if (strcmp(room->scene, name) != 0 || estimator->max_bounces < room->bounces)
+            continue;
+        lc_status status = add(&claim, claims, self, scene, estimator, room->bounces, err);
+        if (status != LC_OK)
+            return status;
+        claim->expect = room->expect;
+        claim->tolerance = room->tolerance;
+        claim->whole_only = room->whole_only;
+        claim->full_only = room->full_only;
+        claim->slack = room->slack;
+        claim->source = room->source;
+    }
     return LC_OK;
 }
 
 const lc_check lc_check_furnace = {
     "furnace",
-    "closed rooms: inside of a sphere of any emission and albedo, thermal furnace",
-    "Jacquez and Kuppenheim, Theory of the integrating sphere, JOSA 45, 1955; Kirchhoff 1860",
+    "closed rooms: inside of a sphere, infinite plates, enclosure, thermal furnace",
+    "Jacquez and Kuppenheim, JOSA 45, 1955; Kirchhoff 1860; CIE 171:2006, case 5.8",
     plan,
     NULL,
 };

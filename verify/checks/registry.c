@@ -13,8 +13,11 @@
     X(emission) \
     X(analytic) \
     X(specular) \
+    X(effects) \
     X(furnace) \
     X(equality) \
+    X(metamorphic) \
+    X(convergence) \
     X(povray)
 
 #define DECLARE(id) extern const lc_check lc_check_##id;
@@ -41,9 +44,32 @@ lc_claim *lc_claims_add(lc_claims *claims, const lc_check *check, const lc_scene
 
 void lc_claims_release(lc_claims *claims)
 {
+    for (int i = 0; i < claims->scene_count; ++i)
+        lc_scene_free(claims->scenes[i]);
+    free(claims->scenes);
     free(claims->items);
-    claims->items = NULL;
-    claims->count = 0;
+    memset(claims, 0, sizeof *claims);
+}
+
+const lc_scene *lc_claims_scene(const lc_claims *claims, const char *name)
+{
+    for (int i = 0; i < claims->scene_count; ++i)
+        if (strcmp(lc_scene_description(claims->scenes[i])->name, name) == 0)
+            return claims->scenes[i];
+    return NULL;
+}
+
+lc_status lc_claims_build(const lc_scene **out, lc_claims *claims, const lc_scene_desc *desc, lc_error *err)
+{
+    lc_scene **scenes = realloc(claims->scenes, ((size_t)claims->scene_count + 1) * sizeof(lc_scene *)), *scene;
+    if (!scenes)
+        return lc_fail(err, LC_FAULT, "out of memory for the scene of a claim");
+    claims->scenes = scenes;
+    lc_status status = lc_scene_build(&scene, desc, err);
+    if (status != LC_OK)
+        return status;
+    *out = scenes[claims->scene_count++] = scene;
+    return LC_OK;
 }
 
 unsigned lc_language(const lc_scene *scene, const lc_estimator *estimator)

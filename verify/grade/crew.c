@@ -36,7 +36,7 @@ typedef struct worker {
     /* Where the next block of samples belongs. */
     int index, tile, x, y, block_count;
     uint64_t sample;
-    double block[LC_BLOCK][3];
+    double block[LC_BLOCK * (1 + LC_MAX_TERMS)][3];
 } worker;
 
 typedef struct crew {
@@ -177,7 +177,7 @@ static int next_block(const crew *c, worker *w)
     }
     uint64_t left = o->first + o->count - w->sample;
     w->block_count = left < LC_BLOCK ? (int)left : LC_BLOCK;
-    expect(w, w->block, sizeof w->block[0] * (size_t)w->block_count);
+    expect(w, w->block, sizeof w->block[0] * (size_t)(w->block_count * (1 + o->minus_count)));
     return w->tile < tiles;
 }
 
@@ -220,7 +220,8 @@ static int take(crew *c, worker *w)
         return 0;
     } else {
         const lc_film *film = c->task->film;
-        lc_film_put(c->task->film, (uint32_t)(w->y * film->width + w->x), w->sample, w->block, w->block_count);
+        lc_film_put(c->task->film, &c->task->request.options, (uint32_t)(w->y * film->width + w->x), w->sample,
+                    (const double(*)[3])w->block, w->block_count);
     }
     return next_block(c, w);
 }

@@ -15,7 +15,7 @@ typedef struct lc_crew_task {
     int image;                       /* the plug-in */
     const lc_jail_options *limits;   /* cpu_seconds: of this crew */
     lc_wire_request request;
-    const lc_scene_desc *scene;      /* NULL to describe */
+    const lc_scene *scene;           /* NULL to describe */
     int workers;
     lc_film *film;                   /* NULL to describe */
     lc_wire_description *description; /* NULL to render */

@@ -15,7 +15,7 @@
 struct lc_jail {
     lc_jail_options options;
     int image;
-    lc_estimator estimator;
+    lc_outside outside;
     lc_wire_description description; /* whose texts are the estimator's */
     lc_crew_result last;
     unsigned parts;
@@ -57,15 +57,36 @@ static void hold(lc_jail *jail, unsigned parts)
 unsigned lc_jail_parts(const lc_jail *jail) { return jail->parts; }
 const char *lc_jail_level(const lc_jail *jail) { return jail->level; }
 
-/* ---- open -------------------------------------------------------------------------------------------------------- */
+/* ---- films ------------------------------------------------------------------------------------------------------- */
 
-/* Stands where the plug-in's function would: whoever calls it in this process has gone past the jail. */
-static lc_rgb nowhere(const lc_scene *scene, const lc_ray *ray, const lc_hit *hit, const lc_options *options,
-                      lc_sampler *sampler)
+static lc_status fill(void *user, lc_film *film, const lc_scene *scene, const lc_render_options *options, lc_error *err)
 {
-    (void)scene, (void)ray, (void)hit, (void)options, (void)sampler;
-    return lc_color(NAN, NAN, NAN);
+    lc_jail *jail = user;
+    lc_jail_options limits = jail->options;
+    long cores = options->threads > 0 ? options->threads : sysconf(_SC_NPROCESSORS_ONLN);
+    int most = LC_MAX_SHARDS / options->shards, tiles = (film->width + LC_TILE - 1) / LC_TILE *
+                                                        ((film->height + LC_TILE - 1) / LC_TILE);
+    limits.cpu_seconds = fmax(jail->cpu_left, 0);
+    lc_crew_task task = {.image = jail->image,
+                         .limits = &limits,
+                         .scene = scene,
+                         .workers = (int)fmax(1, fmin((double)cores, fmin(most, tiles))),
+                         .film = film};
+    task.request.task = LC_WIRE_RENDER;
+    task.request.confinement = (lc_confinement){jail->options.parts, limits.cpu_seconds, jail->options.memory, 0};
+    task.request.options = *options;
+    task.request.width = film->width;
+    task.request.height = film->height;
+    lc_status status = lc_crew_run(&jail->last, &task, err);
+    jail->cpu_left -= jail->last.verdict.cpu_seconds / task.workers;
+    hold(jail, jail->last.parts);
+    if (status == LC_OK && options->progress)
+        options->progress(options->user, 1.0);
+    return status;
 }
+
+const lc_estimator *lc_jail_estimator(const lc_jail *jail) { return &jail->outside.estimator; }
+/* ---- open -------------------------------------------------------------------------------------------------------- */
 
 static lc_status compile(lc_jail *jail, const char *path, lc_error *err)
 {
@@ -107,9 +128,9 @@ static lc_status make_estimator(lc_jail *jail, const char *path, lc_error *err)
                             d->lobes,
                             d->emitters,
                             d->max_bounces,
-                            d->has_radiance ? nowhere : NULL};
-    jail->estimator = e;
-    return lc_descriptor_check(&jail->estimator, path, err);
+                            d->has_radiance ? lc_radiance_outside : NULL};
+    jail->outside = (lc_outside){e, fill, jail};
+    return lc_descriptor_check(&e, path, err);
 }
 
 static lc_status describe(lc_jail *jail, const char *path, lc_error *err)
@@ -164,63 +185,6 @@ void lc_jail_close(lc_jail *jail)
     free(jail);
 }
 
-/* ---- films ------------------------------------------------------------------------------------------------------- */
-
-typedef struct filling {
-    lc_jail *jail;
-    const lc_scene *scene;
-} filling;
-
-static lc_status fill(void *user, lc_film *film, const lc_render_options *options, lc_error *err)
-{
-    const filling *f = user;
-    lc_jail *jail = f->jail;
-    lc_jail_options limits = jail->options;
-    long cores = options->threads > 0 ? options->threads : sysconf(_SC_NPROCESSORS_ONLN);
-    int most = LC_MAX_SHARDS / options->shards, tiles = (film->width + LC_TILE - 1) / LC_TILE *
-                                                        ((film->height + LC_TILE - 1) / LC_TILE);
-    limits.cpu_seconds = fmax(jail->cpu_left, 0);
-    lc_crew_task task = {.image = jail->image,
-                         .limits = &limits,
-                         .scene = lc_scene_description(f->scene),
-                         .workers = (int)fmax(1, fmin((double)cores, fmin(most, tiles))),
-                         .film = film};
-    task.request.task = LC_WIRE_RENDER;
-    task.request.confinement = (lc_confinement){jail->options.parts, limits.cpu_seconds, jail->options.memory, 0};
-    task.request.options = *options;
-    task.request.width = film->width;
-    task.request.height = film->height;
-    lc_status status = lc_crew_run(&jail->last, &task, err);
-    jail->cpu_left -= jail->last.verdict.cpu_seconds / task.workers;
-    hold(jail, jail->last.parts);
-    return status;
-}
-
-lc_status lc_jail_render(lc_jail *jail, lc_film *film, const lc_scene *scene, const lc_render_options *options,
-                         lc_error *err)
-{
-    filling f = {jail, scene};
-    memset(&jail->last, 0, sizeof jail->last);
-    lc_status status = lc_render_from(film, scene, &jail->estimator, options, fill, &f, err);
-    if (status == LC_OK && options->progress)
-        options->progress(options->user, 1.0);
-    return status;
-}
-
-static lc_status render(void *user, lc_film *film, const lc_scene *scene, const lc_estimator *estimator,
-                        const lc_render_options *options, lc_error *err)
-{
-    (void)estimator; /* the jail's own */
-    return lc_jail_render(user, film, scene, options, err);
-}
-
-lc_film_source lc_jail_source(lc_jail *jail)
-{
-    const lc_film_source source = {render, jail};
-    return source;
-}
-
-const lc_estimator *lc_jail_estimator(const lc_jail *jail) { return &jail->estimator; }
 const lc_jail_verdict *lc_jail_last(const lc_jail *jail) { return &jail->last.verdict; }
 const char *lc_jail_said(const lc_jail *jail) { return jail->last.said; }
 const char *lc_jail_messages(const lc_jail *jail) { return jail->messages; }

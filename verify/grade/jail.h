@@ -8,9 +8,7 @@
  *     lc_jail *jail;
  *     lc_jail_verdict why;
  *     lc_status status = lc_jail_open(&jail, "mine.c", NULL, &why, err);   // compile, describe
- *     lc_film_source source = lc_jail_source(jail);
  *     options.estimator = lc_jail_estimator(jail);                         // an lc_verify_options
- *     options.source = &source;
  *     status = lc_verify(&report, &options, load, err);                    // a row whose film fails is a FAIL
  *     ... lc_jail_last(jail) ...                                           // the code of the last film
  *     lc_jail_close(jail);
@@ -66,15 +64,9 @@ lc_status lc_jail_open(lc_jail **out, const char *path, const lc_jail_options *o
                        lc_error *err);
 void lc_jail_close(lc_jail *jail); /* NULL is fine */
 
-/* Its descriptor, by value, but for `radiance`, which is nowhere in this process: it returns NAN. Lives as long as the jail. */
+/* An lc_outside: lc_render, and so the judge, renders it like any other, by options->threads workers. LC_WRONG is then the estimator's fault,
+ * LC_FAULT ours, lc_jail_last() has the code, and the film is spoilt. It lives as long as the jail, and is not to be copied. */
 const lc_estimator *lc_jail_estimator(const lc_jail *jail);
-
-/* lc_render, by workers: options->threads of them. LC_WRONG: the estimator's fault, LC_FAULT: ours; lc_jail_last() has the code.
- * The film is then spoilt. */
-lc_status lc_jail_render(lc_jail *jail, lc_film *film, const lc_scene *scene, const lc_render_options *options,
-                         lc_error *err);
-/* The same for a session of the judge. */
-lc_film_source lc_jail_source(lc_jail *jail);
 
 /* Of the last film. */
 const lc_jail_verdict *lc_jail_last(const lc_jail *jail);

@@ -91,21 +91,44 @@ static int write_scene(int fd, const lc_scene_desc *scene)
     return 1;
 }
 
-lc_status lc_wire_write(int *fd, const lc_wire_request *request, const lc_scene_desc *scene, lc_error *err)
+/* Without names and pointers. */
+static void bare(lc_scene_desc *out, const lc_scene_desc *scene)
+{
+    *out = *scene;
+    memset(out->name, 0, sizeof out->name);
+    for (int i = 0; i < ARRAYS; ++i)
+        set_pointer(out, i, NULL);
+}
+
+static int write_request(int fd, lc_wire_request *copy, const lc_scene *scene)
+{
+    const lc_scene_desc *scenes[1 + LC_MAX_TERMS];
+    int count = scene ? 1 + copy->options.minus_count : 0;
+    for (int i = 0; i < count; ++i) {
+        scenes[i] = lc_scene_description(i ? copy->options.minus[i - 1].scene : scene);
+        bare(&copy->scenes[i], scenes[i]);
+        if (i) {
+            copy->terms[i - 1] = copy->options.minus[i - 1];
+            copy->terms[i - 1].scene = NULL;
+        }
+    }
+    copy->options.minus = NULL;
+    if (!write_all(fd, copy, sizeof *copy))
+        return 0;
+    for (int i = 0; i < count; ++i)
+        if (!write_scene(fd, scenes[i]))
+            return 0;
+    return 1;
+}
+
+lc_status lc_wire_write(int *fd, const lc_wire_request *request, const lc_scene *scene, lc_error *err)
 {
     lc_wire_request copy = *request;
     copy.build = lc_wire_build();
     copy.options.progress = NULL;
     copy.options.user = NULL;
-    memset(&copy.scene, 0, sizeof copy.scene);
-    if (scene) {
-        copy.scene = *scene;
-        memset(copy.scene.name, 0, sizeof copy.scene.name);
-        for (int i = 0; i < ARRAYS; ++i)
-            set_pointer(&copy.scene, i, NULL);
-    }
     int file = memfd_create("request", MFD_CLOEXEC | MFD_ALLOW_SEALING);
-    if (file >= 0 && write_all(file, &copy, sizeof copy) && (!scene || write_scene(file, scene)) &&
+    if (file >= 0 && write_request(file, &copy, scene) &&
         fcntl(file, F_ADD_SEALS, F_SEAL_WRITE | F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) == 0) {
         *fd = file;
         return LC_OK;
@@ -116,7 +139,7 @@ lc_status lc_wire_write(int *fd, const lc_wire_request *request, const lc_scene_
     return status;
 }
 
-const lc_wire_request *lc_wire_read(int fd, lc_scene_desc *scene)
+lc_wire_request *lc_wire_read(int fd)
 {
     struct stat info;
     if (fstat(fd, &info) != 0 || (size_t)info.st_size < sizeof(lc_wire_request))
@@ -125,13 +148,14 @@ const lc_wire_request *lc_wire_read(int fd, lc_scene_desc *scene)
     char *map = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_PRIVATE, fd, 0);
     if (map == MAP_FAILED)
         return NULL;
-    const lc_wire_request *request = (const lc_wire_request *)(void *)map;
-    if (request->build != lc_wire_build())
-        return NULL;
-    *scene = request->scene;
-    for (int i = 0; i < ARRAYS; ++i) {
-        set_pointer(scene, i, map + at);
-        at += size_of(scene, i);
-    }
-    return at == size ? request : NULL;
+    lc_wire_request *request = (lc_wire_request *)(void *)map;
+    int count = request->build != lc_wire_build()      ? -1
+                : request->task == LC_WIRE_DESCRIBE ? 0
+                                                    : 1 + request->options.minus_count;
+    for (int k = 0; k < count; ++k)
+        for (int i = 0; i < ARRAYS; ++i) {
+            set_pointer(&request->scenes[k], i, map + at);
+            at += size_of(&request->scenes[k], i);
+        }
+    return count >= 0 && at == size ? request : NULL;
 }

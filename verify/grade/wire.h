@@ -3,7 +3,7 @@
  * wire.h: what passes between the program and a worker. Both are of one build on one machine, so structures go as they
  * are; `build` says when that is not so. The request is a file in memory; the answer a pipe: a greeting, sent before
  * anything of the plug-in runs, then a description, or the bare samples (three doubles each, tile by tile of the
- * worker's shard, row by row, in ascending order).
+ * worker's shard, row by row, in ascending order; of a film of differences, the scene's, then each term's).
  */
 #ifndef LC_WIRE_H
 #define LC_WIRE_H
@@ -22,7 +22,8 @@ typedef struct lc_wire_request {
     lc_confinement confinement;
     lc_render_options options; /* the shard is the worker's own: shard + shards * index of shards * count */
     int width, height;
-    lc_scene_desc scene; /* its arrays follow, in the order of their counts */
+    lc_term terms[LC_MAX_TERMS];               /* their scenes: */
+    lc_scene_desc scenes[1 + LC_MAX_TERMS];    /* the scene and those of options.minus; their arrays follow, one scene after the other */
 } lc_wire_request;
 
 typedef struct lc_wire_greeting {
@@ -43,11 +44,11 @@ typedef struct lc_wire_description {
 /* Differs where two programs would not understand each other. */
 uint64_t lc_wire_build(void);
 
-/* Writes the request as a sealed file in memory, to *fd. The scene may be NULL. Its names stay at home: an
- * estimator has no need to know what it renders. */
-lc_status lc_wire_write(int *fd, const lc_wire_request *request, const lc_scene_desc *scene, lc_error *err);
+/* Writes the request as a sealed file in memory, to *fd; `scene` is NULL where nothing is rendered, the terms' are the options'. Names
+ * stay at home: an estimator has no need to know what it renders. */
+lc_status lc_wire_write(int *fd, const lc_wire_request *request, const lc_scene *scene, lc_error *err);
 
-/* Maps the request of descriptor `fd`; its scene's arrays point into the map, which stays. NULL when it is not one. */
-const lc_wire_request *lc_wire_read(int fd, lc_scene_desc *scene);
+/* Maps the request of descriptor `fd`, which stays; its scenes' arrays point into the map. NULL when it is not one. */
+lc_wire_request *lc_wire_read(int fd);
 
 #endif

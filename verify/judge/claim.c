@@ -12,7 +12,7 @@ static const char *const channel_names[] = {"R", "G", "B"};
 
 /* ---- words ---------------------------------------------------------------------------------------------------- */
 
-static void describe_bad(lc_row *row, const lc_film *film, uint64_t seed)
+void lc_row_bad(lc_row *row, const lc_film *film, uint64_t seed)
 {
     row->verdict = LC_ROW_FAIL;
     snprintf(row->reason, sizeof row->reason,
@@ -32,7 +32,7 @@ static lc_status describe_missing(lc_row *row, const lc_error *err)
     return LC_OK;
 }
 
-static void describe(lc_row *row, const lc_pyramid *p)
+void lc_row_describe(lc_row *row, const lc_pyramid *p)
 {
     if (row->verdict == LC_ROW_FAIL) {
         double whole = 100 * (row->ratio - 1);
@@ -61,7 +61,7 @@ static void describe(lc_row *row, const lc_pyramid *p)
 /* ---- numbers -------------------------------------------------------------------------------------------------- */
 
 /* Writes what the pyramid of one channel found into the row. */
-static void fill_numbers(lc_row *row, const lc_pyramid *p, int channel, double scale, double alpha_pass, double n)
+void lc_row_numbers(lc_row *row, const lc_pyramid *p, int channel, double scale, double alpha_pass, double n)
 {
     const lc_student *s = &p->whole.student;
     lc_interval interval = lc_student_interval(s, 2 * alpha_pass);
@@ -83,7 +83,7 @@ static void fill_numbers(lc_row *row, const lc_pyramid *p, int channel, double s
 }
 
 /* How hard the channel was: FAIL before undecided before PASS, then by the deviation. */
-static double hardness(const lc_pyramid *p, double scale)
+double lc_row_hardness(const lc_pyramid *p, double scale)
 {
     double step = p->verdict == LC_FAIL ? 2e9 : p->verdict == LC_GO_ON ? 1e9 : 0;
     double deviation = fabs(p->whole.student.difference) / scale;
@@ -91,7 +91,7 @@ static double hardness(const lc_pyramid *p, double scale)
 }
 
 /* Mean over the pixels that are not skipped, of the film or of the expected values. */
-static double mean_of(const lc_film *film, const lc_expected *expected, const unsigned char *skip, int channel)
+double lc_claim_mean(const lc_film *film, const lc_expected *expected, const unsigned char *skip, int channel)
 {
     size_t count =
                film ? (size_t)film->width * (size_t)film->height : (size_t)expected->width * (size_t)expected->height,
@@ -136,6 +136,7 @@ static lc_status judge_exact(lc_row *row, lc_session *session, const lc_claim *c
 {
     const lc_film *film, *other = NULL;
     const lc_expected *expected = NULL;
+    lc_error why = {""};
     uint32_t arm = lc_session_arm(claim->estimator);
     row->samples = LC_BLOCK;
     lc_status status = lc_session_film(&film, session, claim->scene, claim->estimator, claim->min_bounces,
@@ -143,12 +144,14 @@ static lc_status judge_exact(lc_row *row, lc_session *session, const lc_claim *c
     if (status == LC_OK)
         status = claim->other ? lc_session_film(&other, session, claim->scene, claim->other, claim->min_bounces,
                                                 claim->max_bounces, arm, row->samples, err)
-                              : lc_session_values(&expected, session, claim, err);
+                              : lc_session_values(&expected, session, claim, &why);
+    if (status == LC_WRONG)
+        return describe_missing(row, &why);
     if (status != LC_OK)
-        return status;
+        return why.text[0] ? lc_fail(err, status, "%s", why.text) : status;
     row->paths = row->samples * (uint64_t)film->width * (uint64_t)film->height;
     if (film->bad)
-        describe_bad(row, film, session->options->seed);
+        lc_row_bad(row, film, session->options->seed);
     else
         compare_exactly(row, film, other, expected, claim->tolerance);
     return LC_OK;
@@ -168,21 +171,64 @@ static int is_still(const lc_film *film, const lc_expected *expected)
 
 /* ---- statistical claims -------------------------------------------------------------------------------------------- */
 
-/* c of an estimator on a scene: from the table, else from a pilot whose samples are never used again. */
-static lc_status noise_of(double *c, lc_session *session, const lc_claim *claim, const lc_estimator *estimator,
-                          lc_error *err)
+/* What stands on one side of a claim: an estimator over a scene, with numbers of its own. */
+typedef struct side {
+    const lc_scene *scene;
+    const lc_estimator *estimator; /* NULL: nobody, but expected values */
+    int min_bounces, max_bounces;
+    uint32_t arm;
+} side;
+
+static side first_side(const lc_claim *claim)
 {
-    *c = claim->min_bounces == 1 && lc_is_registered(estimator)
-             ? lc_cell_noise(lc_scene_description(claim->scene)->name, estimator->name, claim->max_bounces)
+    return (side){claim->scene, claim->estimator, claim->min_bounces, claim->max_bounces,
+                  lc_session_arm(claim->estimator)};
+}
+
+static side second_side(const lc_claim *claim)
+{
+    side s = first_side(claim);
+    s.estimator = claim->other;
+    if (claim->other)
+        s.arm = lc_session_arm(claim->other);
+    if (claim->term_count) {
+        s.scene = claim->term[0].scene;
+        s.estimator = claim->estimator;
+        s.min_bounces -= claim->term[0].shift;
+        s.max_bounces -= claim->term[0].shift;
+        s.arm ^= lc_arm("over another scene");
+    }
+    return s;
+}
+
+static lc_status film_of(const lc_film **out, lc_session *session, const side *s, uint32_t arm, uint64_t samples,
+                         lc_error *err)
+{
+    return lc_session_film(out, session, s->scene, s->estimator, s->min_bounces, s->max_bounces, arm, samples, err);
+}
+
+/* c of an estimator on a scene: from the table, else from a pilot whose samples are never used again. */
+static lc_status noise_of(double *c, lc_session *session, const side *s, lc_error *err)
+{
+    *c = s->min_bounces == 1 && lc_is_registered(s->estimator)
+             ? lc_cell_noise(lc_scene_description(s->scene)->name, s->estimator->name, s->max_bounces)
              : NAN;
     if (!isnan(*c))
         return LC_OK;
     const lc_film *pilot;
-    lc_status status = lc_session_film(&pilot, session, claim->scene, estimator, claim->min_bounces, claim->max_bounces,
-                                       ~lc_session_arm(estimator), LC_BLOCK, err);
+    lc_status status = film_of(&pilot, session, s, ~s->arm, LC_BLOCK, err);
     if (status == LC_OK)
         *c = lc_film_noise(pilot);
     return status;
+}
+
+lc_status lc_claim_noise(double *c, lc_session *session, const lc_claim *claim, const lc_estimator *estimator,
+                         lc_error *err)
+{
+    side s = first_side(claim);
+    s.estimator = estimator;
+    s.arm = lc_session_arm(estimator);
+    return noise_of(c, session, &s, err);
 }
 
 typedef struct look_result {
@@ -200,9 +246,9 @@ static lc_status judge_look(look_result *out, const lc_film *film, const lc_film
     out->verdict = LC_PASS;
     for (int c = 0; c < 3; ++c) {
         lc_pyramid pyramid;
-        double scale = mean_of(other, expected, skip, c);
+        double scale = lc_claim_mean(other, expected, skip, c);
         /* Where nothing is expected, any light at all is wrong by infinitely many percent: the margin is then of what was seen. */
-        double unit = scale > 0 ? scale : mean_of(film, NULL, skip, c);
+        double unit = scale > 0 ? scale : lc_claim_mean(film, NULL, skip, c);
         plan->margin[lc_pyramid_levels(film->width, film->height) - 1] = unit > 0 ? margin * unit : INFINITY;
         plan->relative = other ? margin : 0;
         lc_status status = other ? lc_field_two(field, film, other, c, tolerance * scale, err)
@@ -215,14 +261,25 @@ static lc_status judge_look(look_result *out, const lc_film *film, const lc_film
         if (status != LC_OK)
             return status;
         out->verdict = lc_verdict_both(out->verdict, pyramid.verdict);
-        if (hardness(&pyramid, unit) > most) {
-            most = hardness(&pyramid, unit);
+        if (lc_row_hardness(&pyramid, unit) > most) {
+            most = lc_row_hardness(&pyramid, unit);
             out->hardest = pyramid;
             out->channel = c;
             out->scale = unit;
         }
     }
     return LC_OK;
+}
+
+double lc_claim_margin(const lc_session *session, const lc_claim *claim, double c)
+{
+    return session->margin * (claim->slack > 0 ? claim->slack : 1) * fmax(1.0, c);
+}
+
+void lc_plan_whole(lc_pyramid_plan *plan, int width, int height)
+{
+    for (int level = 0; level < lc_pyramid_levels(width, height) - 1; ++level)
+        plan->least[level] = UINT64_MAX;
 }
 
 /* Share of a channel's and look's budget that the test of independence gets; the pyramid has the rest. */
@@ -253,7 +310,7 @@ static void describe_dependence(lc_row *row, const lc_batches *b, int channel)
  * reserve, none beyond `most`. The plan leaves room for a mean 5 standard errors off; most are within one or two, and pass at 2/5 (two
  * rows in three) or 3/5 (98 in 100). One look more or less costs hardly anything: five are paid for at 1% more samples than one of them
  * would need. */
-static int row_looks(uint64_t samples[LC_MOST_LOOKS], uint64_t planned, uint64_t most)
+int lc_row_looks(uint64_t samples[LC_MOST_LOOKS], uint64_t planned, uint64_t most)
 {
     static const double share[LC_MOST_LOOKS] = {0.2, 0.4, 0.6, 1, 4};
     double all = fmax((double)(planned < most ? planned : most), LC_LEAST_SAMPLES);
@@ -274,27 +331,30 @@ static lc_status judge_statistically(lc_row *row, lc_session *session, const lc_
     const lc_scene_desc *desc = lc_scene_description(claim->scene);
     int pixels = desc->width * desc->height;
     double c, c_other = 0;
-    lc_status status = noise_of(&c, session, claim, claim->estimator, err);
-    if (status == LC_OK && claim->other)
-        status = noise_of(&c_other, session, claim, claim->other, err);
+    side one = first_side(claim), two = second_side(claim);
+    lc_status status = noise_of(&c, session, &one, err);
+    if (status == LC_OK && two.estimator)
+        status = noise_of(&c_other, session, &two, err);
     if (status != LC_OK)
         return status;
-    row->margin = fmax(session->margin * fmax(1.0, c), claim->margin);
+    row->margin = fmax(lc_claim_margin(session, claim, c), claim->margin);
     /* A mean anywhere within the tolerance must be shown to be within the margin. */
     double room = claim->margin > 0 ? row->margin - claim->tolerance : row->margin;
 
     /* Both arms grow together. */
     uint64_t most = (uint64_t)fmin(session->options->suite->most_samples / pixels, UINT32_MAX);
     uint64_t looks[LC_MOST_LOOKS];
-    int look_count = row_looks(looks, lc_planned_samples(hypot(c, c_other), room, pixels), most);
+    int look_count = lc_row_looks(looks, lc_planned_samples(hypot(c, c_other), room, pixels), most);
     lc_budget budget = {session->options->false_fail, session->options->false_pass, session->rows, 3, LC_MOST_LOOKS};
     lc_pyramid_plan plan;
     double alpha = lc_budget_row_fail(&budget);
     lc_pyramid_plan_init(&plan, (1 - NOISE_SHARE) * alpha, lc_budget_row_pass(&budget));
+    if (claim->whole_only)
+        lc_plan_whole(&plan, desc->width, desc->height);
 
     const lc_expected *expected = NULL;
     lc_error why = {""};
-    if (!claim->other)
+    if (!two.estimator)
         status = lc_session_values(&expected, session, claim, &why);
     if (status == LC_WRONG)
         return describe_missing(row, &why);
@@ -306,16 +366,14 @@ static lc_status judge_statistically(lc_row *row, lc_session *session, const lc_
     for (int k = 0; status == LC_OK && k < look_count && result.verdict == LC_GO_ON && dependent < 0; ++k) {
         const lc_film *film, *other = NULL;
         row->samples = looks[k];
-        status = lc_session_film(&film, session, claim->scene, claim->estimator, claim->min_bounces, claim->max_bounces,
-                                 lc_session_arm(claim->estimator), row->samples, err);
-        if (status == LC_OK && claim->other)
-            status = lc_session_film(&other, session, claim->scene, claim->other, claim->min_bounces,
-                                     claim->max_bounces, lc_session_arm(claim->other), row->samples, err);
+        status = film_of(&film, session, &one, one.arm, row->samples, err);
+        if (status == LC_OK && two.estimator)
+            status = film_of(&other, session, &two, two.arm, row->samples, err);
         if (status != LC_OK)
             return status;
         row->paths = row->samples * (uint64_t)pixels;
         if (film->bad || (other && other->bad)) {
-            describe_bad(row, film->bad ? film : other, session->options->seed);
+            lc_row_bad(row, film->bad ? film : other, session->options->seed);
             return LC_OK;
         }
         if (claim->may_be_still && expected && is_still(film, expected)) {
@@ -329,49 +387,68 @@ static lc_status judge_statistically(lc_row *row, lc_session *session, const lc_
     if (status != LC_OK)
         return status;
     row->verdict = result.verdict == LC_PASS ? LC_ROW_PASS : result.verdict == LC_FAIL ? LC_ROW_FAIL : LC_ROW_UNDECIDED;
-    fill_numbers(row, &result.hardest, result.channel, result.scale, plan.alpha_pass, (double)row->paths);
-    describe(row, &result.hardest);
+    lc_row_numbers(row, &result.hardest, result.channel, result.scale, plan.alpha_pass, (double)row->paths);
+    lc_row_describe(row, &result.hardest);
     if (dependent >= 0)
         describe_dependence(row, &batches, dependent);
     return LC_OK;
 }
 
-static lc_status judge_host(lc_row *row, const lc_session *session, const lc_claim *claim, lc_error *err)
+/* By the claim itself, with its share of the budget. */
+static lc_status judge_by_itself(lc_row *row, lc_session *session, const lc_claim *claim, uint32_t arm, lc_error *err)
 {
     const lc_verify_options *o = session->options;
-    lc_share share = {o->false_fail / session->rows, o->false_pass / session->rows, session->margin, o->seed};
+    lc_share share = {o->false_fail / session->rows, o->false_pass / session->rows, session->margin, o->seed, arm,
+                      o->threads};
+    lc_status status = claim->decide(row, claim, &share, err);
+    if (claim->scene)
+        session->paths += row->paths;
+    return status;
+}
+
+static lc_status judge_host(lc_row *row, lc_session *session, const lc_claim *claim, lc_error *err)
+{
+    const lc_verify_options *o = session->options;
     snprintf(row->check, sizeof row->check, "%s", claim->check->name);
     snprintf(row->scene, sizeof row->scene, "%s", claim->subject);
     snprintf(row->estimator, sizeof row->estimator, "host");
     snprintf(row->source, sizeof row->source, "%s", claim->source);
     snprintf(row->reproduce, sizeof row->reproduce, "%s verify --suite %s -c %s --seed %llu", o->program,
              o->suite->name, row->check, (unsigned long long)o->seed);
-    return claim->decide(row, claim, &share, err);
+    return judge_by_itself(row, session, claim, 0, err);
 }
 
 lc_status lc_judge_claim(lc_row *row, lc_session *session, const lc_claim *claim, lc_error *err)
 {
     const lc_verify_options *o = session->options;
-    if (claim->decide)
+    if (!claim->scene)
         return judge_host(row, session, claim, err);
     const lc_scene_desc *desc = lc_scene_description(claim->scene);
     snprintf(row->check, sizeof row->check, "%s", claim->check->name);
-    snprintf(row->scene, sizeof row->scene, "%s", desc->name);
+    snprintf(row->scene, sizeof row->scene, "%.39s%s%.23s", desc->name, claim->relation ? "/" : "",
+             claim->relation ? claim->relation : "");
     snprintf(row->estimator, sizeof row->estimator, "%s", claim->estimator->name);
     snprintf(row->source, sizeof row->source, "%s", claim->source);
     snprintf(row->reproduce, sizeof row->reproduce, "%s verify --suite %s -c %s -e %s --scene %s --seed %llu",
              o->program, o->suite->name, row->check,
-             o->given && claim->estimator == o->estimator ? o->given : row->estimator, row->scene,
+             o->given && claim->estimator == o->estimator ? o->given : row->estimator, desc->name,
              (unsigned long long)o->seed);
+    if (lc_is_foreign(session, claim->estimator))
+        snprintf(row->reproduce, sizeof row->reproduce, "%s verify --suite %s -c %s --renderer %.300s --scene %s --seed %llu",
+                 o->program, o->suite->name, row->check, o->renderer->path, desc->name, (unsigned long long)o->seed);
     row->exact = claim->exact;
     row->min_bounces = claim->min_bounces;
     row->max_bounces = claim->max_bounces;
+    if (lc_is_foreign(session, claim->estimator))
+        return lc_judge_foreign(row, session, claim, err);
     lc_estimate *field = malloc(sizeof *field * (size_t)desc->width * (size_t)desc->height);
     if (!field)
         return lc_fail(err, LC_FAULT, "out of memory for the differences of %s", desc->name);
     lc_error why = {""};
-    lc_status status = claim->exact ? judge_exact(row, session, claim, &why)
-                                    : judge_statistically(row, session, claim, field, &why);
+    lc_status status = claim->decide   ? judge_by_itself(row, session, claim, lc_session_arm(claim->estimator), &why)
+                       : claim->exact  ? judge_exact(row, session, claim, &why)
+                       : claim->paired ? lc_judge_paired(row, session, claim, field, &why)
+                                       : judge_statistically(row, session, claim, field, &why);
     free(field);
     if (status == LC_WRONG) /* the estimator gave no film: it crashed, or took too long */
         return describe_missing(row, &why);
@@ -407,7 +484,7 @@ lc_status lc_compare_films(lc_row *row, const lc_film *a, const lc_film *b, doub
     row->samples = a->count;
     row->paths = a->count * (uint64_t)a->width * (uint64_t)a->height;
     row->verdict = result.verdict == LC_PASS ? LC_ROW_PASS : result.verdict == LC_FAIL ? LC_ROW_FAIL : LC_ROW_UNDECIDED;
-    fill_numbers(row, &result.hardest, result.channel, result.scale, plan.alpha_pass, (double)row->paths);
-    describe(row, &result.hardest);
+    lc_row_numbers(row, &result.hardest, result.channel, result.scale, plan.alpha_pass, (double)row->paths);
+    lc_row_describe(row, &result.hardest);
     return LC_OK;
 }

@@ -7,6 +7,7 @@
 #define LC_JUDGE_H
 
 #include "verify/checks/checks.h"
+#include "verify/renderers/adapter.h"
 #include "verify/report/report.h"
 
 /* ---- suites ------------------------------------------------------------------------------------------------ */
@@ -30,6 +31,8 @@ extern const char *const lc_suite_scenes[]; /* ends with NULL */
 extern const lc_cell lc_cells[];            /* ends with scene = NULL */
 
 const lc_suite *lc_suite_find(const char *name);
+/* 1 when the suite judges this claim. The quick one leaves out what is full_only; an estimator that varies another has chosen rows only. */
+int lc_suite_has(const lc_suite *suite, const lc_claim *claim);
 /* c of that cell; NAN when the table does not know it (then a discarded pilot measures it). */
 double lc_cell_noise(const char *scene, const char *estimator, int max_bounces);
 /* Samples a pixel that a row plans for, so that hardly any ends undecided: (c z / margin)^2 over the pixels, z = 11; at most 2^62. */
@@ -45,8 +48,8 @@ typedef struct lc_verify_options {
     int threads;
     const lc_estimator *estimator; /* only this one (it need not be in the registry), or NULL: all */
     const char *given;             /* how that was named on the command line; NULL: by its name */
-    const lc_film_source *source;  /* of its films; NULL: lc_render */
     const char *check, *scene;     /* only these, or NULL */
+    const lc_adapter *renderer;    /* another program whose estimator `estimator` is, or NULL */
     /* Called after each row, in the order of the report; may be NULL. */
     void (*on_row)(void *user, const lc_row *row, int done, int count);
     void *user;
@@ -58,10 +61,17 @@ void lc_verify_options_init(lc_verify_options *options);
 
 /* Fills the report. LC_OK even when rows failed: lc_report_status() tells. Loads scenes through `load`, which owns nothing of them. */
 typedef lc_status lc_load_scene_fn(lc_scene **out, const char *name, lc_error *err);
+/* A scene of the suites: through `load`, or where the name is a family's, the one of this seed. */
+lc_status lc_suite_scene(lc_scene **out, const char *name, uint64_t seed, lc_load_scene_fn *load, lc_error *err);
 lc_status lc_verify(lc_report *report, const lc_verify_options *options, lc_load_scene_fn *load, lc_error *err);
 
-/* Measures c of every cell of all suites, and calls `line` with each as a row of lc_cells: how that table is made. */
-lc_status lc_measure_cells(lc_load_scene_fn *load, void (*line)(void *user, const char *text), void *user, lc_error *err);
+/* Measures c of every cell of all suites (of one estimator, of one scene, where not NULL), and calls `line` with each as a row of
+ * lc_cells: how that table is made. */
+lc_status lc_measure_cells(lc_load_scene_fn *load, const lc_estimator *estimator, const char *scene,
+                           void (*line)(void *user, const char *text), void *user, lc_error *err);
+
+/* c of a film: standard deviation of a sample over the mean, both pooled over the image, in the channel where it is largest. */
+double lc_film_noise(const lc_film *film);
 
 /* ---- two images ------------------------------------------------------------------------------------------------ */
 

@@ -14,6 +14,7 @@ typedef struct lc_stock_film {
     const lc_estimator *estimator;
     int min_bounces, max_bounces;
     uint32_t arm;
+    const lc_claim *minus; /* less the terms of this claim; NULL: less nothing */
     lc_film *film;
 } lc_stock_film;
 
@@ -33,6 +34,7 @@ typedef struct lc_session {
     int rows; /* among which the budget is split */
     double margin;
     uint64_t paths;
+    struct lc_foreign *foreign; /* what is known of the renderer under test on this scene; NULL: nothing yet */
 } lc_session;
 
 enum { LC_MOST_LOOKS = 5 };
@@ -41,6 +43,9 @@ enum { LC_MOST_LOOKS = 5 };
 lc_status lc_session_film(const lc_film **out, lc_session *session, const lc_scene *scene,
                           const lc_estimator *estimator, int min_bounces, int max_bounces, uint32_t arm,
                           uint64_t samples, lc_error *err);
+/* The differences of a paired claim: each sample of its estimator over its scene, less the terms. */
+lc_status lc_session_difference(const lc_film **out, lc_session *session, const lc_claim *claim, uint32_t arm,
+                                uint64_t samples, lc_error *err);
 /* The expected values of the claim. They are the session's. */
 lc_status lc_session_values(const lc_expected **out, lc_session *session, const lc_claim *claim, lc_error *err);
 /* Drops all films and values: the next scene needs none of them. */
@@ -52,10 +57,33 @@ int lc_is_registered(const lc_estimator *estimator);
 /* The stream of an estimator in this run. One that is not in the registry never shares a stream with one that is, even under the same name. */
 uint32_t lc_session_arm(const lc_estimator *estimator);
 
-/* c of a film: standard deviation of a sample over the mean, both pooled over the image, in the channel where it is largest. */
-double lc_film_noise(const lc_film *film);
-
 /* Decides one claim and fills the row. */
 lc_status lc_judge_claim(lc_row *row, lc_session *session, const lc_claim *claim, lc_error *err);
+/* The same for a paired claim, in paired.c; room for the differences of one channel in `field`. */
+lc_status lc_judge_paired(lc_row *row, lc_session *session, const lc_claim *claim, lc_estimate *field, lc_error *err);
+
+/* Parts of both. The margin at noise c; a plan for the whole image only; the looks up to the planned samples, and one in
+ * reserve, none beyond `most`. */
+double lc_claim_margin(const lc_session *session, const lc_claim *claim, double c);
+void lc_plan_whole(lc_pyramid_plan *plan, int width, int height);
+int lc_row_looks(uint64_t samples[LC_MOST_LOOKS], uint64_t planned, uint64_t most);
+/* The same for a claim about the renderer under test, in foreign.c; LC_BAD_INPUT when it refuses the scene, or the claim asks
+ * for what no image can tell. */
+lc_status lc_judge_foreign(lc_row *row, lc_session *session, const lc_claim *claim, lc_error *err);
+/* 1 for the estimator of the renderer under test. */
+int lc_is_foreign(const lc_session *session, const lc_estimator *estimator);
+void lc_foreign_free(struct lc_foreign *foreign);
+
+/* c of an estimator of ours on the claim's scene, from the table or from a pilot. */
+lc_status lc_claim_noise(double *c, lc_session *session, const lc_claim *claim, const lc_estimator *estimator,
+                         lc_error *err);
+/* Mean over the pixels that are not skipped, of the film or else of the expected values. */
+double lc_claim_mean(const lc_film *film, const lc_expected *expected, const unsigned char *skip, int channel);
+/* How hard a channel was: the hardest one is shown. */
+double lc_row_hardness(const lc_pyramid *p, double scale);
+/* Writes into the row what the pyramid of a channel found; then FAIL or UNDECIDED in words; then, of a film, bad samples. */
+void lc_row_numbers(lc_row *row, const lc_pyramid *p, int channel, double scale, double alpha_pass, double n);
+void lc_row_describe(lc_row *row, const lc_pyramid *p);
+void lc_row_bad(lc_row *row, const lc_film *film, uint64_t seed);
 
 #endif

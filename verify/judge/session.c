@@ -26,7 +26,7 @@ uint32_t lc_session_arm(const lc_estimator *estimator)
 static int same_stream(const lc_stock_film *a, const lc_stock_film *b)
 {
     return a->scene == b->scene && a->estimator == b->estimator && a->min_bounces == b->min_bounces &&
-           a->max_bounces == b->max_bounces && a->arm == b->arm;
+           a->max_bounces == b->max_bounces && a->arm == b->arm && a->minus == b->minus;
 }
 
 /* The film of the stream with the most samples up to `samples`, or NULL. */
@@ -54,11 +54,8 @@ static lc_status copy_film(lc_film **out, const lc_film *from, lc_error *err)
 }
 
 /* Every look is kept, so that a claim sees exactly the samples of its own looks, whatever other claims have asked for before. */
-lc_status lc_session_film(const lc_film **out, lc_session *session, const lc_scene *scene,
-                          const lc_estimator *estimator, int min_bounces, int max_bounces, uint32_t arm,
-                          uint64_t samples, lc_error *err)
+static lc_status grow(const lc_film **out, lc_session *session, lc_stock_film key, uint64_t samples, lc_error *err)
 {
-    lc_stock_film key = {scene, estimator, min_bounces, max_bounces, arm, NULL};
     const lc_film *base = longest_film(session, &key, samples);
     if (base && base->count == samples) {
         *out = base;
@@ -68,29 +65,46 @@ lc_status lc_session_film(const lc_film **out, lc_session *session, const lc_sce
     if (!films)
         return lc_fail(err, LC_FAULT, "out of memory for a film");
     session->films = films;
-    const lc_scene_desc *desc = lc_scene_description(scene);
+    const lc_scene_desc *desc = lc_scene_description(key.scene);
     lc_status status =
         base ? copy_film(&key.film, base, err) : lc_film_create(&key.film, desc->width, desc->height, err);
     if (status != LC_OK)
         return status;
     films[session->film_count++] = key;
-    lc_render_options options = {.min_bounces = min_bounces,
-                                 .max_bounces = max_bounces,
+    lc_render_options options = {.min_bounces = key.min_bounces,
+                                 .max_bounces = key.max_bounces,
                                  .seed = session->options->seed,
-                                 .arm = arm,
+                                 .arm = key.arm,
                                  .first = key.film->count,
                                  .count = samples - key.film->count,
                                  .threads = session->options->threads};
-    session->paths += options.count * (uint64_t)desc->width * (uint64_t)desc->height;
+    if (key.minus) {
+        options.minus = key.minus->term;
+        options.minus_count = key.minus->term_count;
+    }
+    session->paths += options.count * (uint64_t)desc->width * (uint64_t)desc->height * (1 + (uint64_t)options.minus_count);
     *out = key.film;
-    const lc_film_source *source = estimator == session->options->estimator ? session->options->source : NULL;
-    status = source ? source->render(source->user, key.film, scene, estimator, &options, err)
-                    : lc_render(key.film, scene, estimator, &options, err);
+    status = lc_render(key.film, key.scene, key.estimator, &options, err);
     if (status != LC_OK) { /* a film that failed is nothing to grow from */
         lc_film_free(key.film);
         --session->film_count;
     }
     return status;
+}
+
+lc_status lc_session_film(const lc_film **out, lc_session *session, const lc_scene *scene,
+                          const lc_estimator *estimator, int min_bounces, int max_bounces, uint32_t arm,
+                          uint64_t samples, lc_error *err)
+{
+    return grow(out, session, (lc_stock_film){scene, estimator, min_bounces, max_bounces, arm, NULL, NULL}, samples,
+                err);
+}
+
+lc_status lc_session_difference(const lc_film **out, lc_session *session, const lc_claim *claim, uint32_t arm,
+                                uint64_t samples, lc_error *err)
+{
+    lc_stock_film key = {claim->scene, claim->estimator, claim->min_bounces, claim->max_bounces, arm, claim, NULL};
+    return grow(out, session, key, samples, err);
 }
 
 static void release_expected(lc_expected *expected)
@@ -137,6 +151,8 @@ void lc_session_clear(lc_session *session)
         release_expected(&session->values[i].expected);
     free(session->films);
     free(session->values);
+    lc_foreign_free(session->foreign);
+    session->foreign = NULL;
     session->films = NULL;
     session->values = NULL;
     session->film_count = session->value_count = 0;

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "estimators/registry.h"
+#include "verify/checks/family.h"
 #include "verify/judge/judge_c.h"
 
 void lc_verify_options_init(lc_verify_options *options)
@@ -17,6 +18,20 @@ void lc_verify_options_init(lc_verify_options *options)
     options->false_fail = options->false_pass = 1e-6;
     options->seed = 1;
     options->program = "build/lightcheck";
+}
+
+lc_status lc_suite_scene(lc_scene **out, const char *name, uint64_t seed, lc_load_scene_fn *load, lc_error *err)
+{
+    const lc_family *family = lc_family_find(name);
+    lc_scene_desc desc;
+    if (!family)
+        return load(out, name, err);
+    lc_status status = lc_family_describe(&desc, family, seed, err);
+    if (status != LC_OK)
+        return status;
+    status = lc_scene_build(out, &desc, err);
+    lc_scene_desc_release(&desc);
+    return status;
 }
 
 static lc_status plan_pair(lc_claims *claims, int *not_applicable, const lc_scene *scene, const lc_estimator *estimator,
@@ -45,13 +60,19 @@ static lc_status plan_scene(lc_claims *claims, int *not_applicable, const lc_ver
     return LC_OK;
 }
 
-/* Claims for the full suite only are dropped from the quick one, before rows are counted. */
-static void drop_full_only(lc_claims *claims)
+/* Before rows are counted. Of another renderer there are images only: no relation between samples, no decision by checks of their
+ * own; one bounce against a closed form is kept, since it has no direct estimator beside it that is held to that. */
+static void keep_suite(lc_claims *claims, const lc_suite *suite, const lc_adapter *renderer)
 {
     int kept = 0;
-    for (int i = 0; i < claims->count; ++i)
-        if (!claims->items[i].full_only)
+    for (int i = 0; i < claims->count; ++i) {
+        const lc_claim *c = &claims->items[i];
+        int is_foreign = renderer && c->estimator == &renderer->estimator;
+        if (is_foreign && (c->term_count || c->decide))
+            continue;
+        if (lc_suite_has(suite, c) || (is_foreign && c->expect && c->max_bounces == 1))
             claims->items[kept++] = claims->items[i];
+    }
     claims->count = kept;
 }
 
@@ -64,9 +85,20 @@ static lc_status plan_host(lc_claims *claims, lc_error *err)
     return status;
 }
 
+/* Why POV-Ray has nothing to say about a scene. */
+static lc_status collect_excuse(lc_report *report, const lc_verify_options *o, const lc_scene *scene, lc_error *err)
+{
+    const char *name = lc_scene_description(scene)->name;
+    lc_error why = {""};
+    if (o->estimator || (o->check && strcmp(o->check, "povray") != 0) || (o->scene && strcmp(o->scene, name) != 0) ||
+        !lc_povray_excuse(&why, scene))
+        return LC_OK;
+    return lc_report_note(report, "povray", name, why.text, err);
+}
+
 static int is_selected(const lc_verify_options *o, const lc_claim *claim)
 {
-    if (claim->decide) /* whoever asks about one estimator or one scene does not ask about the host */
+    if (!claim->scene) /* whoever asks about one estimator or one scene does not ask about the host */
         return !o->estimator && !o->scene && (!o->check || strcmp(o->check, claim->check->name) == 0);
     return (!o->estimator || o->estimator == claim->estimator) &&
            (!o->check || strcmp(o->check, claim->check->name) == 0) &&
@@ -90,10 +122,16 @@ static lc_status judge_all(lc_report *report, lc_session *session, const lc_clai
         if (!row)
             return lc_fail(err, LC_FAULT, "out of memory for the report");
         lc_status status = lc_judge_claim(row, session, &claims->items[i], err);
-        if (status != LC_OK) {
+        if (status != LC_OK)
             --report->count;
-            return status;
+        if (status == LC_BAD_INPUT && !claims->items[i].decide && lc_is_foreign(session, claims->items[i].estimator)) {
+            status = lc_report_note(report, claims->items[i].check->name, lc_scene_description(scene)->name, err->text, err);
+            --selected;
+            if (status == LC_OK)
+                continue;
         }
+        if (status != LC_OK)
+            return status;
         if (o->on_row)
             o->on_row(o->user, row, report->count, selected);
     }
@@ -105,7 +143,7 @@ lc_status lc_verify(lc_report *report, const lc_verify_options *options, lc_load
 {
     lc_scene **scenes = NULL;
     int scene_count = 0, suite_scenes = 0;
-    lc_claims claims = {NULL, 0};
+    lc_claims claims = {.count = 0};
     lc_session session = {.options = options, .margin = options->margin > 0 ? options->margin : options->suite->margin};
     lc_status status = LC_OK;
     memset(report, 0, sizeof *report);
@@ -118,13 +156,14 @@ lc_status lc_verify(lc_report *report, const lc_verify_options *options, lc_load
     scenes = calloc((size_t)suite_scenes, sizeof *scenes);
     status = scenes ? plan_host(&claims, err) : lc_fail(err, LC_FAULT, "out of memory for the scenes");
     for (int i = 0; i < suite_scenes && status == LC_OK; ++i) {
-        status = load(&scenes[scene_count], lc_suite_scenes[i], err);
+        status = lc_suite_scene(&scenes[scene_count], lc_suite_scenes[i], options->seed, load, err);
         if (status == LC_OK)
             status = plan_scene(&claims, &report->not_applicable, options, scenes[scene_count++], err);
+        if (status == LC_OK)
+            status = collect_excuse(report, options, scenes[scene_count - 1], err);
     }
     if (status == LC_OK) {
-        if (strcmp(options->suite->name, "quick") == 0)
-            drop_full_only(&claims);
+        keep_suite(&claims, options->suite, options->renderer);
         session.rows = claims.count;
         lc_budget budget = {options->false_fail, options->false_pass, session.rows, 3, LC_MOST_LOOKS};
         lc_budget_text(report->budget, sizeof report->budget, &budget, 64, 64);
@@ -144,10 +183,12 @@ static lc_status measure_scene(const lc_claims *claims, lc_session *session, voi
 {
     for (int i = 0; i < claims->count; ++i) {
         const lc_claim *claim = &claims->items[i];
-        int known = claim->exact;
+        int known = claim->exact || claim->decide || claim->term_count ||
+                    (session->options->estimator && session->options->estimator != claim->estimator);
         for (int j = 0; j < i; ++j)
             known |= claims->items[j].estimator == claim->estimator &&
-                     claims->items[j].max_bounces == claim->max_bounces && !claims->items[j].exact;
+                     claims->items[j].max_bounces == claim->max_bounces && !claims->items[j].exact && !claims->items[j].decide &&
+                     !claims->items[j].term_count;
         if (known)
             continue;
         const lc_film *film;
@@ -163,15 +204,20 @@ static lc_status measure_scene(const lc_claims *claims, lc_session *session, voi
     return LC_OK;
 }
 
-lc_status lc_measure_cells(lc_load_scene_fn *load, void (*line)(void *user, const char *text), void *user,
-                           lc_error *err)
+lc_status lc_measure_cells(lc_load_scene_fn *load, const lc_estimator *estimator, const char *only,
+                           void (*line)(void *user, const char *text), void *user, lc_error *err)
 {
     lc_verify_options options;
     lc_status status = LC_OK;
     lc_verify_options_init(&options);
+    options.estimator = estimator;
     for (int i = 0; lc_suite_scenes[i] && status == LC_OK; ++i) {
+        if (only && strcmp(only, lc_suite_scenes[i]) != 0)
+            continue;
+        if (lc_family_find(lc_suite_scenes[i]))
+            continue; /* each of its scenes has another noise: a pilot measures it */
         lc_session session = {.options = &options};
-        lc_claims claims = {NULL, 0};
+        lc_claims claims = {.count = 0};
         lc_scene *scene = NULL;
         int not_applicable = 0;
         status = load(&scene, lc_suite_scenes[i], err);

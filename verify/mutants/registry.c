@@ -1,63 +1,66 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  *
- * Every mutant, and what it was before: a new one is one line here, and one in test_mutants.c.
+ * Every family of mutants. A new family is one line here; a new mutant is one in its family's file, and one in test_mutants.c.
  */
 #include <stddef.h>
+#include <string.h>
 
 #include "registry.h"
 
-#define MUTANTS(X) \
-    X(light_no_cosine, "light_direct") \
-    X(light_no_pi, "light_direct") \
-    X(light_no_count, "light_direct") \
-    X(light_no_light_cosine, "light_direct") \
-    X(light_no_visibility, "light_direct") \
-    X(light_no_distance, "light_direct") \
-    X(light_back_emits, "light_direct") \
-    X(light_centre, "light_direct") \
-    X(light_below_horizon, "light_direct") \
-    X(light_one_percent, "light_direct") \
-    X(three_point_jacobian_inverted, "three_point") \
-    X(three_point_back_emits, "three_point") \
-    X(three_point_no_visibility, "three_point") \
-    X(three_point_uniform_pick, "three_point") \
-    X(three_point_light_density, "three_point") \
-    X(hemisphere_no_cosine, "hemisphere_direct") \
-    X(hemisphere_no_pi, "hemisphere_direct") \
-    X(hemisphere_cosine_directions, "hemisphere_direct") \
-    X(path_no_cosine, "path") \
-    X(path_cosine_twice, "path") \
-    X(path_no_pi, "path") \
-    X(path_cosine_directions, "path") \
-    X(path_cosine_density, "path") \
-    X(path_normal_not_turned, "path") \
-    X(path_albedo_once, "path") \
-    X(path_u_reaches_one, "path") \
-    X(path_too_deep, "path") \
-    X(path_too_short, "path") \
-    X(path_emission_last, "path") \
-    X(path_ends_at_light, "path") \
-    X(path_no_camera_emission, "path") \
-    X(path_no_camera_sky, "path") \
-    X(mirror_extra_cosine, "mirror") \
-    X(mirror_wrong_sign, "mirror") \
-    X(mirror_no_albedo, "mirror") \
-    X(mirror_not_divided, "mirror") \
-    X(mirror_divided_swapped, "mirror") \
-    X(mirror_not_counted, "mirror") \
-    X(dielectric_schlick, "dielectric") \
-    X(dielectric_eta_inverted, "dielectric") \
-    X(dielectric_always_enters, "dielectric") \
-    X(dielectric_total_is_black, "dielectric") \
-    X(dielectric_no_ior_squared, "dielectric") \
-    X(dielectric_weighted_again, "dielectric") \
-    X(dielectric_never_reflects, "dielectric") \
-    X(dielectric_swapped, "dielectric") \
-    X(dielectric_straight, "dielectric")
+#define FAMILIES(X) \
+    X(light) \
+    X(three_point) \
+    X(hemisphere) \
+    X(path) \
+    X(mirror) \
+    X(dielectric) \
+    X(nee) \
+    X(absolute) \
+    X(effects)
 
-#define DECLARE(id, of) extern const lc_estimator lc_estimator_##id;
-#define MEMBER(id, of) {&lc_estimator_##id, of},
+#define DECLARE(name) extern const lc_mutant lc_##name##_mutants[];
+#define MEMBER(name) {#name, lc_##name##_mutants},
 
-MUTANTS(DECLARE)
+FAMILIES(DECLARE)
 
-const lc_mutant lc_mutants[] = {MUTANTS(MEMBER){NULL, NULL}};
+const lc_mutant_family lc_mutant_families[] = {FAMILIES(MEMBER){NULL, NULL}};
+
+const lc_mutant_category lc_mutant_categories[] = {
+    {"cosine", "a cosine"},
+    {"density", "how likely a direction or a point was"},
+    {"directions", "how directions are chosen"},
+    {"brdf", "the BRDF"},
+    {"lights", "how many lights there are, and which was chosen"},
+    {"distance", "distances"},
+    {"visibility", "what stands in the way"},
+    {"sides", "front and back of a surface or a light"},
+    {"emission", "where emitted light counts"},
+    {"bounces", "how many bounces are counted"},
+    {"roulette", "where paths end by chance"},
+    {"weights", "how two techniques share the work"},
+    {"mirror", "mirrors"},
+    {"glass", "glass"},
+    {"numbers", "random numbers"},
+    {"thresholds", "a constant that depends on the scene's size or brightness"},
+    {"time", "the moment at which a ray travels"},
+    {"scale", "the brightness as a whole"},
+    {NULL, NULL},
+};
+
+const lc_mutant *lc_mutant_at(int i)
+{
+    for (const lc_mutant_family *f = lc_mutant_families; f->name; ++f)
+        for (const lc_mutant *m = f->mutants; m->estimator; ++m)
+            if (i-- == 0)
+                return m;
+    return NULL;
+}
+
+const lc_mutant *lc_mutant_find(const char *name)
+{
+    const lc_mutant *m = NULL;
+    for (int i = 0; (m = lc_mutant_at(i)) != NULL; ++i)
+        if (strcmp(m->estimator->name, name) == 0)
+            return m;
+    return NULL;
+}

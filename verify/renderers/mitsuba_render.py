@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Renders a scene with Mitsuba 3's path integrator, as an image that knows its own error.
+"""Renders a scene with Mitsuba 3, as an image that knows its own error.
 
     mitsuba_render.py SCENE.xml OUT.exr --spp N --seed N [--bounces K] [--min-bounces 0|1] [--size WxH]
-                      [--replicates R] [--variant NAME] [-D NAME=VALUE]
+                      [--replicates R] [--variant NAME] [--integrator NAME] [-D NAME=VALUE]
 
 OUT.exr (float32) holds the mean in R G B, the variance of that mean in variance.R/G/B, and in `samples` the number of
 replicates. The variance comes from R independent replicates (seeds N, N+1, ...) of N/R samples each: it is itself
@@ -21,6 +21,15 @@ import sys
 
 NO_LIMIT = -1
 DEEP = 1 << 30  # an rr_depth that no path reaches
+# What --integrator may ask for; those of direct light do one bounce whatever --bounces says.
+INTEGRATORS = {
+    "path": {"type": "path"},
+    "volpath": {"type": "volpath"},
+    "ptracer": {"type": "ptracer"},
+    "direct": {"type": "direct"},
+    "direct_emitter": {"type": "direct", "emitter_samples": 1, "bsdf_samples": 0},
+    "direct_bsdf": {"type": "direct", "emitter_samples": 0, "bsdf_samples": 1},
+}
 
 
 def parse_arguments():
@@ -34,6 +43,7 @@ def parse_arguments():
     parser.add_argument("--size", help="WxH, default: the file's")
     parser.add_argument("--replicates", type=int, default=16, help="default 16, at most spp")
     parser.add_argument("--variant", help="default: llvm_ad_rgb where it works, else scalar_rgb")
+    parser.add_argument("--integrator", choices=sorted(INTEGRATORS), default="path")
     parser.add_argument("-D", dest="parameters", action="append", default=[], metavar="NAME=VALUE")
     args = parser.parse_args()
     args.replicates = min(args.replicates, args.spp)
@@ -62,8 +72,9 @@ def llvm_works():
                           stderr=subprocess.DEVNULL, check=False).returncode == 0
 
 
-def path(mi, max_depth):
-    return mi.load_dict({"type": "path", "max_depth": max_depth, "rr_depth": DEEP})
+def integrator(mi, name, max_depth):
+    depths = {} if name.startswith("direct") else {"max_depth": max_depth, "rr_depth": DEEP}
+    return mi.load_dict({**INTEGRATORS[name], **depths})
 
 
 def max_depth_of(scene):
@@ -78,12 +89,12 @@ def max_depth_of(scene):
 def render(mi, np, scene, args):
     """Mean and variance of the mean, from the spread of the replicates."""
     depth = max_depth_of(scene) if args.bounces is None else (NO_LIMIT if args.bounces < 0 else args.bounces + 1)
-    whole, emission = path(mi, depth), path(mi, 1)
+    whole, emission = integrator(mi, args.integrator, depth), integrator(mi, "path", 1)
     spp = args.spp // args.replicates
     total, squares = 0, 0  # Welford over replicates
     for i in range(args.replicates):
-        def picture(integrator, seed=args.seed + i):
-            return np.array(mi.render(scene, integrator=integrator, spp=spp, seed=seed), dtype=np.float64)[:, :, :3]
+        def picture(how, seed=args.seed + i):
+            return np.array(mi.render(scene, integrator=how, spp=spp, seed=seed), dtype=np.float64)[:, :, :3]
 
         image = picture(whole)
         if args.min_bounces == 1:  # not hide_emitters, which also takes the lamps' surfaces away

@@ -83,6 +83,15 @@ static lc_status check_clips(const lc_scene_desc *desc, lc_error *err)
     return LC_OK;
 }
 
+static lc_status check_lens(const lc_scene_desc *desc, lc_error *err)
+{
+    if (!(desc->camera.aperture_radius > 0))
+        return LC_OK;
+    return lc_fail(err, LC_BAD_INPUT,
+                   "%s: a lens: POV-Ray's focal blur takes few samples of a fixed pattern, and no more where it trusts them",
+                   desc->name);
+}
+
 static lc_status check_options(const lc_pov_options *o, lc_error *err)
 {
     if (o->area_samples < 2 || o->area_samples > 256)
@@ -208,6 +217,8 @@ lc_status lc_pov_export(FILE *out, const lc_scene_desc *desc, const lc_pov_optio
     lc_status status = check_options(options, err);
     if (status == LC_OK)
         status = check_clips(desc, err);
+    if (status == LC_OK)
+        status = check_lens(desc, err);
     if (status == LC_OK)
         status = check_sky(&w, err);
     if (status == LC_OK)

@@ -16,7 +16,11 @@
 
 #include "verify/renderers/pov_export_c.h"
 
-static int is_lamp(const lc_shape_desc *shape) { return shape->emits && !lc_pov_is_black(shape->radiance.color[0]); }
+static int is_lamp(const lc_shape_desc *shape)
+{
+    const lc_texture *t = &shape->radiance;
+    return shape->emits && !(lc_pov_is_black(t->color[0]) && (!t->is_checkerboard || lc_pov_is_black(t->color[1])));
+}
 
 static lc_vec3 column(const lc_shape_desc *shape, int j)
 {
@@ -52,11 +56,10 @@ static void declare_vector(const lc_pov_writer *w, const char *name, lc_vec3 v)
 }
 
 /* The light of an area in the middle of which, or for which, a point stands. */
-static void declare_color(const lc_pov_writer *w, const lc_shape_desc *shape, double area)
+static void declare_color(const lc_pov_writer *w, lc_rgb radiance, double area)
 {
-    double scale = area * w->unit * w->unit / (2 * LC_PI * LC_POV_FADE * LC_POV_FADE);
-    const lc_rgb *l = &shape->radiance.color[0];
-    fprintf(w->out, "#declare C = rgb <%.15g, %.15g, %.15g>;\n", scale * l->r, scale * l->g, scale * l->b);
+    lc_rgb c = lc_rgb_scale(area * w->unit * w->unit / (2 * LC_PI * LC_POV_FADE * LC_POV_FADE), radiance);
+    fprintf(w->out, "#declare C = rgb <%.15g, %.15g, %.15g>;\n", c.r, c.g, c.b);
 }
 
 /* Nodes in [-1, 1] or [0, 1], and weights that add up to 1. */
@@ -93,8 +96,8 @@ static void write_macro(const lc_pov_writer *w)
 }
 
 /* One rectangle o + [-1, 1] u + [-1, 1] v; `out` lies on the side of the normal of the shape that is not flipped. */
-static lc_status write_face(const lc_pov_writer *w, const lc_shape_desc *shape, lc_vec3 o, lc_vec3 u, lc_vec3 v,
-                            lc_vec3 out)
+static lc_status write_face(const lc_pov_writer *w, const lc_shape_desc *shape, lc_rgb radiance, lc_vec3 o, lc_vec3 u,
+                            lc_vec3 v, lc_vec3 out)
 {
     lc_vec3 cross = lc_cross(u, v), n = lc_normalize(cross);
     if ((lc_dot(n, out) < 0) != (shape->flip_normals != 0))
@@ -104,7 +107,7 @@ static lc_status write_face(const lc_pov_writer *w, const lc_shape_desc *shape, 
     declare_vector(w, "U", lc_scale(w->unit, u));
     declare_vector(w, "V", lc_scale(w->unit, v));
     declare_vector(w, "N", n);
-    declare_color(w, shape, 4 * lc_length(cross));
+    declare_color(w, radiance, 4 * lc_length(cross));
     if (declare_gauss(w, "X", "XW", nu, -1) != LC_OK || declare_gauss(w, "Y", "YW", nv, -1) != LC_OK)
         return LC_FAULT;
     fprintf(w->out,
@@ -115,10 +118,60 @@ static lc_status write_face(const lc_pov_writer *w, const lc_shape_desc *shape, 
     return LC_OK;
 }
 
+/* Where an axis of a checkerboard changes colour, in [-1, 1] of the rectangle: at u' = scale u + offset = n / 2, u =
+ * (x + 1) / 2. Ends with 1, begins with -1; returns how many, at most `room`, or 0 when they are more. */
+static int cuts_of(double *cuts, int room, double scale, double offset)
+{
+    int count = 0;
+    cuts[count++] = -1;
+    double low = fmin(offset, scale + offset), high = fmax(offset, scale + offset);
+    for (double n = floor(2 * low) + 1; n < 2 * high; ++n) {
+        double x = 2 * (n / 2 - offset) / scale - 1;
+        if (count + 1 >= room)
+            return 0;
+        if (x > -1 + 1e-9 && x < 1 - 1e-9)
+            cuts[count++] = x;
+    }
+    cuts[count++] = 1;
+    for (int i = 1; i < count; ++i) /* a negative scale counts downwards */
+        for (int j = i; j > 0 && cuts[j - 1] > cuts[j]; --j) {
+            double swapped = cuts[j];
+            cuts[j] = cuts[j - 1];
+            cuts[j - 1] = swapped;
+        }
+    return count;
+}
+
+enum { MOST_CUTS = 64 };
+
+/* A checkerboard of radiance: each cell is a lamp. */
+static lc_status write_cells(const lc_pov_writer *w, const lc_shape_desc *shape)
+{
+    double x[MOST_CUTS], y[MOST_CUTS];
+    const lc_texture *t = &shape->radiance;
+    int nx = cuts_of(x, MOST_CUTS, t->scale[0], t->offset[0]), ny = cuts_of(y, MOST_CUTS, t->scale[1], t->offset[1]);
+    for (int i = 0; i + 1 < nx; ++i)
+        for (int j = 0; j + 1 < ny; ++j) {
+            double u = 0.5 * (x[i] + x[i + 1]), v = 0.5 * (y[j] + y[j + 1]);
+            lc_vec3 o = lc_add(column(shape, 3), lc_add(lc_scale(u, column(shape, 0)), lc_scale(v, column(shape, 1))));
+            lc_rgb radiance = lc_texture_at(t, 0.5 * (u + 1), 0.5 * (v + 1));
+            lc_status status = lc_pov_is_black(radiance)
+                                   ? LC_OK
+                                   : write_face(w, shape, radiance, o, lc_scale(0.5 * (x[i + 1] - x[i]), column(shape, 0)),
+                                                lc_scale(0.5 * (y[j + 1] - y[j]), column(shape, 1)), column(shape, 2));
+            if (status != LC_OK)
+                return status;
+        }
+    return LC_OK;
+}
+
 /* The third column lies on the side of the normal: a normal goes by the inverse transpose. */
 static lc_status write_rectangle(const lc_pov_writer *w, const lc_shape_desc *shape)
 {
-    return write_face(w, shape, column(shape, 3), column(shape, 0), column(shape, 1), column(shape, 2));
+    if (shape->radiance.is_checkerboard)
+        return write_cells(w, shape);
+    return write_face(w, shape, shape->radiance.color[0], column(shape, 3), column(shape, 0), column(shape, 1),
+                      column(shape, 2));
 }
 
 static lc_status write_cube(const lc_pov_writer *w, const lc_shape_desc *shape)
@@ -126,7 +179,7 @@ static lc_status write_cube(const lc_pov_writer *w, const lc_shape_desc *shape)
     lc_status status = LC_OK;
     for (int i = 0; i < 6 && status == LC_OK; ++i) {
         lc_vec3 out = lc_scale(i % 2 ? -1 : 1, column(shape, i / 2));
-        status = write_face(w, shape, lc_add(column(shape, 3), out), column(shape, (i / 2 + 1) % 3),
+        status = write_face(w, shape, shape->radiance.color[0], lc_add(column(shape, 3), out), column(shape, (i / 2 + 1) % 3),
                             column(shape, (i / 2 + 2) % 3), out);
     }
     return status;
@@ -142,7 +195,7 @@ static lc_status write_disk(const lc_pov_writer *w, const lc_shape_desc *shape)
     declare_vector(w, "U", lc_scale(w->unit, u));
     declare_vector(w, "V", lc_scale(w->unit, v));
     declare_vector(w, "N", n);
-    declare_color(w, shape, LC_PI * lc_length(cross) / around);
+    declare_color(w, shape->radiance.color[0], LC_PI * lc_length(cross) / around);
     if (declare_gauss(w, "R", "RW", rings, 0) != LC_OK) /* of the squared radius */
         return LC_FAULT;
     fprintf(w->out,
@@ -160,7 +213,7 @@ static lc_status write_sphere(const lc_pov_writer *w, const lc_shape_desc *shape
     double radius = cbrt(fabs(lc_affine_determinant(&shape->to_world)));
     int across = points_along(w, 2 * radius), count = 3 * across * across;
     declare_vector(w, "O", lc_scale(w->unit, column(shape, 3)));
-    declare_color(w, shape, 4 * LC_PI * radius * radius / count);
+    declare_color(w, shape->radiance.color[0], 4 * LC_PI * radius * radius / count);
     fprintf(w->out,
             "#for (I, 0, %d)\n"
             "    #declare Z = 1 - (2 * I + 1) / %d;\n"
@@ -208,8 +261,13 @@ lc_status lc_pov_check_lights(const lc_pov_writer *w, lc_error *err)
     int lights = d->point_count + d->directional_count;
     if (w->options->mode == LC_POV_SPECULAR)
         return LC_OK; /* there they light nothing */
-    for (int i = 0; i < d->shape_count; ++i)
+    for (int i = 0; i < d->shape_count; ++i) {
+        const lc_texture *t = &d->shapes[i].radiance;
         lights += is_lamp(&d->shapes[i]);
+        if (is_lamp(&d->shapes[i]) && t->is_checkerboard && fabs(t->scale[0]) + fabs(t->scale[1]) > MOST_CUTS / 2 - 4)
+            return lc_fail(err, LC_BAD_INPUT, "%s:%d: the checkerboard of this lamp is too fine to be cut into lamps",
+                           d->name, d->shapes[i].line);
+    }
     if (lights && d->has_sky && !lc_pov_is_black(d->sky))
         return lc_fail(err, LC_BAD_INPUT,
                        "%s: POV-Ray counts the bounces of a sky's light and of a lamp's differently: not both",

@@ -22,7 +22,8 @@ static int same_side(const lc_side *a, const lc_side *b)
            (!s->is_checkerboard ||
             (same_color(s->color[1], t->color[1]) && s->scale[0] == t->scale[0] && s->scale[1] == t->scale[1] &&
              s->offset[0] == t->offset[0] && s->offset[1] == t->offset[1])) &&
-           same_color(a->mirror, b->mirror) && a->glass == b->glass;
+           same_color(a->mirror, b->mirror) && a->glass == b->glass && same_color(a->glossy, b->glossy) &&
+           a->alpha == b->alpha;
 }
 
 static const lc_material_desc *material_of(const lc_pov_writer *w, const lc_shape_desc *shape)
@@ -50,17 +51,32 @@ static lc_status check_glass(const lc_pov_writer *w, const lc_shape_desc *shape,
     return LC_OK;
 }
 
+static int is_lit_by_sky_alone(const lc_scene_desc *desc)
+{
+    int lamps = desc->point_count + desc->directional_count;
+    for (int i = 0; i < desc->shape_count; ++i)
+        lamps += desc->shapes[i].emits && !texture_is_black(&desc->shapes[i].radiance);
+    return desc->has_sky && lamps == 0;
+}
+
 static lc_status check_shape(const lc_pov_writer *w, const lc_shape_desc *shape, lc_error *err)
 {
     const lc_material_desc *m = material_of(w, shape);
-    int specular = 0, diffuse = 0, glass = 0, checkered = 0;
+    int specular = 0, diffuse = 0, glass = 0, checkered = 0, glossy = 0;
     for (int i = 0; i < 2; ++i) {
         specular |= !lc_pov_is_black(m->side[i].mirror);
         glass |= m->side[i].glass > 0;
         diffuse |= !texture_is_black(&m->side[i].diffuse);
         checkered |= m->side[i].diffuse.is_checkerboard;
+        glossy |= !lc_pov_is_black(m->side[i].glossy);
     }
-    if ((specular || glass) && w->options->mode != LC_POV_SPECULAR)
+    if (lc_length(shape->motion) > 0)
+        return refuse(w, shape, "it moves: POV-Ray knows motion from frame to frame only", err);
+    if (glossy)
+        return refuse(w, shape, "POV-Ray's reflections are sharp: it has no rough mirror", err);
+    /* Rays that gather the light of a sky are reflected like any others; one bounce leaves nothing to count. */
+    int gathers_all = w->options->mode == LC_POV_RADIOSITY && w->options->bounces == 1 && is_lit_by_sky_alone(w->desc);
+    if ((glass || (specular && !gathers_all)) && w->options->mode != LC_POV_SPECULAR)
         return refuse(w, shape,
                       "POV-Ray's lights reach no surface off a mirror or through glass: mode specular, for scenes "
                       "without diffuse surfaces",
@@ -70,8 +86,8 @@ static lc_status check_shape(const lc_pov_writer *w, const lc_shape_desc *shape,
                       err);
     if (checkered && shape->kind != LC_RECTANGLE)
         return refuse(w, shape, "a checkerboard has POV-Ray's pigment on rectangles only", err);
-    if (shape->emits && shape->radiance.is_checkerboard)
-        return refuse(w, shape, "a checkerboard of radiance is no lamp of POV-Ray's: cut it into rectangles", err);
+    if (shape->emits && shape->radiance.is_checkerboard && (shape->kind != LC_RECTANGLE || w->options->emission))
+        return refuse(w, shape, "a glowing checkerboard is many lamps: on rectangles only, and not seen by the camera", err);
     return glass ? check_glass(w, shape, err) : LC_OK;
 }
 

@@ -20,6 +20,8 @@ static const char *const mode_names[] = {"direct", "radiosity", "specular"}; /* 
 #define DELTA "POV-Ray; band 0.2% of the mean from its convergence, pixels beyond it left out"
 
 #define CHAIN "POV-Ray, mirrors and glass; band 0.2% of the mean from its convergence, pixels beyond it left out"
+#define DARK "POV-Ray; black exactly"
+#define SKY "POV-Ray's radiosity, which gathers a sky; band 0.2% of the mean for tiles of 8 x 8 pixels"
 #define GATHERED "POV-Ray's radiosity on top of its direct light; band 1.5% of the mean for tiles of 8 x 8 pixels"
 
 /* Points and samples are chosen so that few pixels are beyond the band; cost grows as the square of each. */
@@ -36,6 +38,18 @@ const lc_pov_case lc_pov_cases[] = {
     {"occluder", LC_POV_DIRECT, 40, 8, 1, 1, 1, 0.002, 0, "light_direct", DIRECT},
     {"cornell", LC_POV_DIRECT, 32, 8, 1, 1, 1, 0.002, 0, "light_direct", DIRECT},
     {"mirror_corridor", LC_POV_SPECULAR, 2, 8, 1, 0, 12, 0.002, 0, "mirror", CHAIN},
+    {"plane_cube", LC_POV_DIRECT, 24, 8, 1, 1, 1, 0.002, 0, "light_direct", DIRECT},
+    {"lamp_100w", LC_POV_DIRECT, 16, 8, 1, 1, 1, 0.002, 0, "light_direct", DIRECT},
+    {"textured_lamp", LC_POV_DIRECT, 24, 8, 1, 1, 1, 0.002, 0, "light_direct", DIRECT},
+    {"flipped_twosided", LC_POV_DIRECT, 24, 8, 1, 1, 1, 0.002, 0, "light_direct", DIRECT},
+    {"cornell_small", LC_POV_DIRECT, 32, 8, 1, 1, 1, 0.002, 0, "light_direct", DIRECT},
+    {"cornell_large", LC_POV_DIRECT, 32, 8, 1, 1, 1, 0.002, 0, "light_direct", DIRECT},
+    {"furnace_sphere", LC_POV_DIRECT, 32, 4, 1, 1, 1, 0.002, 0, "light_direct", DIRECT},
+    {"light_behind", LC_POV_DIRECT, 8, 2, 1, 1, 1, 0, 0, "light_direct", DARK},
+    {"light_below", LC_POV_DIRECT, 8, 2, 1, 1, 1, 0, 0, "light_direct", DARK},
+    {"no_lights", LC_POV_DIRECT, 2, 2, 1, 1, 1, 0, 0, "light_direct", DARK},
+    {"sky", LC_POV_RADIOSITY, 2, 4, 400, 1, 1, 0.002, 0, "hemisphere_direct", SKY},
+    {"mirror_sky", LC_POV_RADIOSITY, 2, 8, 400, 1, 1, 0.002, 0, "dielectric", SKY},
     {"glass_slab", LC_POV_SPECULAR, 2, 8, 1, 0, 8, 0.002, 0, "dielectric", CHAIN},
     {"glass_sphere", LC_POV_SPECULAR, 2, 8, 1, 0, 2, 0.002, 0, "dielectric", CHAIN},
     {"bright_room", LC_POV_RADIOSITY, 12, 4, 100, 1, 3, 0.015, 0, "path", GATHERED},

@@ -1,23 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  *
- * Running POV-Ray: a folder, a child, a deadline, an image.
+ * Running POV-Ray: a scene, a child, an image.
  */
 #include "verify/renderers/pov_run.h"
 
-#include <dirent.h>
 #include <errno.h>
-#include <fcntl.h>
-#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "io/exr.h"
+#include "verify/renderers/program.h"
 
-enum { PATH_SIZE = 4096, MOST_ARGUMENTS = 16 };
+enum { PATH_SIZE = LC_PROGRAM_PATH, MOST_ARGUMENTS = 16 };
 
 void lc_pov_run_init(lc_pov_run *run)
 {
@@ -27,108 +23,22 @@ void lc_pov_run_init(lc_pov_run *run)
 
 /* ---- the program ------------------------------------------------------------------------------------------------- */
 
-/* The file of `povray` on PATH. Searched here, for a child may not. */
-static lc_status find_program(char path[PATH_SIZE], lc_error *err)
-{
-    const char *list = getenv("PATH");
-    for (const char *at = list ? list : "/usr/local/bin:/usr/bin:/bin"; *at;) {
-        size_t length = strcspn(at, ":");
-        int n = snprintf(path, PATH_SIZE, "%.*s%s", (int)length, at, length ? "/povray" : "./povray");
-        struct stat info;
-        if (n > 0 && n < PATH_SIZE && access(path, X_OK) == 0 && stat(path, &info) == 0 && S_ISREG(info.st_mode))
-            return LC_OK;
-        at += length + (at[length] == ':');
-    }
-    return lc_fail(err, LC_BAD_INPUT, "there is no program `povray`: install POV-Ray 3.7 (package povray)");
-}
-
-static double now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-/* Waits for the child, kills it at the deadline. */
-static lc_status wait_for(pid_t child, double seconds, int *exit_status, lc_error *err)
-{
-    double deadline = now() + seconds;
-    for (;;) {
-        pid_t done = waitpid(child, exit_status, WNOHANG);
-        if (done == child)
-            return LC_OK;
-        if (done < 0 && errno != EINTR)
-            return lc_fail(err, LC_FAULT, "cannot wait for POV-Ray: %s", strerror(errno));
-        if (now() > deadline) {
-            kill(child, SIGKILL);
-            while (waitpid(child, exit_status, 0) < 0 && errno == EINTR)
-                ;
-            return lc_fail(err, LC_FAULT, "POV-Ray was stopped after %g s", seconds);
-        }
-        const struct timespec pause = {0, 5000000};
-        nanosleep(&pause, NULL);
-    }
-}
-
-/* Between fork and exec only what a signal handler may do: other threads may hold any lock. */
-static void become(const char *program, char *const *arguments, char *const *environment, const char *folder)
-{
-    int null = open("/dev/null", O_RDONLY);
-    if (chdir(folder) != 0 || null < 0 || dup2(null, 0) < 0)
-        _exit(127);
-    int log = open("log", O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    if (log < 0 || dup2(log, 1) < 0 || dup2(log, 2) < 0)
-        _exit(127);
-    execve(program, arguments, environment);
-    _exit(127);
-}
-
+/* In `folder`, with that as HOME and nothing else of the user's, so that no configuration changes the image. */
 static lc_status run_program(int *exit_status, const char *const *options, const char *folder, double seconds,
                              lc_error *err)
 {
-    char program[PATH_SIZE], home[PATH_SIZE], name[] = "povray", locale[] = "LC_ALL=C";
-    char words[MOST_ARGUMENTS][64], *arguments[MOST_ARGUMENTS + 2] = {name};
+    char program[LC_PROGRAM_PATH], home[LC_PROGRAM_PATH], locale[] = "LC_ALL=C";
+    const char *arguments[MOST_ARGUMENTS + 2] = {"povray"};
     char *const environment[] = {home, locale, NULL};
-    lc_status status = find_program(program, err);
-    if (status != LC_OK)
-        return status;
-    snprintf(home, sizeof home, "HOME=%s", folder);
+    if (!lc_program_find(program, "povray"))
+        return lc_fail(err, LC_BAD_INPUT, "there is no program `povray`: install POV-Ray 3.7 (package povray)");
+    snprintf(home, sizeof home, "HOME=%.*s", LC_PROGRAM_PATH - 8, folder);
     for (int i = 0; options[i] && i < MOST_ARGUMENTS; ++i) {
-        snprintf(words[i], sizeof words[i], "%s", options[i]);
-        arguments[i + 1] = words[i];
+        arguments[i + 1] = options[i];
         arguments[i + 2] = NULL;
     }
-    pid_t child = fork();
-    if (child < 0)
-        return lc_fail(err, LC_FAULT, "cannot start POV-Ray: %s", strerror(errno));
-    if (child == 0)
-        become(program, arguments, environment, folder);
-    return wait_for(child, seconds, exit_status, err);
-}
-
-/* ---- its folder -------------------------------------------------------------------------------------------------- */
-
-static lc_status make_folder(char folder[PATH_SIZE], lc_error *err)
-{
-    const char *base = getenv("TMPDIR");
-    int n = snprintf(folder, PATH_SIZE - 64, "%s/lightcheck-pov-XXXXXX", base && base[0] ? base : "/tmp");
-    if (n < 0 || n >= PATH_SIZE - 64)
-        return lc_fail(err, LC_BAD_INPUT, "TMPDIR is too long a path");
-    if (!mkdtemp(folder))
-        return lc_fail(err, LC_FAULT, "%s: cannot make a folder for POV-Ray: %s", folder, strerror(errno));
-    return LC_OK;
-}
-
-static void remove_folder(const char *folder)
-{
-    char path[PATH_SIZE];
-    DIR *dir = opendir(folder);
-    for (struct dirent *entry = dir ? readdir(dir) : NULL; entry; entry = readdir(dir))
-        if (snprintf(path, sizeof path, "%s/%s", folder, entry->d_name) < PATH_SIZE)
-            unlink(path); /* "." and ".." stay */
-    if (dir)
-        closedir(dir);
-    rmdir(folder);
+    lc_program run = {program, "POV-Ray", arguments, environment, folder, seconds};
+    return lc_program_run(exit_status, &run, err);
 }
 
 static lc_status write_scene(const char *folder, const char *text, size_t length, lc_error *err)
@@ -170,9 +80,7 @@ lc_status lc_pov_version(char *version, size_t size, lc_error *err)
     static const char *const options[] = {"--version", NULL};
     char folder[PATH_SIZE], path[PATH_SIZE], line[256];
     int exit_status = 0, found = 0;
-    lc_status status = find_program(path, err);
-    if (status == LC_OK)
-        status = make_folder(folder, err);
+    lc_status status = lc_program_folder(folder, err);
     if (status != LC_OK)
         return status;
     status = run_program(&exit_status, options, folder, 30, err);
@@ -189,7 +97,7 @@ lc_status lc_pov_version(char *version, size_t size, lc_error *err)
         fclose(log);
     if (status == LC_OK && !found)
         status = report_failure(folder, exit_status, err);
-    remove_folder(folder);
+    lc_program_clear(folder);
     return status;
 }
 
@@ -225,7 +133,7 @@ lc_status lc_pov_render_text(double *rgb, const char *text, size_t length, int w
     if (s < 1 || s > 16 || width < 1 || height < 1 || width > LC_MAX_SIZE / s || height > LC_MAX_SIZE / s)
         return lc_fail(err, LC_BAD_INPUT, "%d x %d pixels, %d times as many a side for POV-Ray: expected 1 to %d",
                        width, height, s, LC_MAX_SIZE);
-    lc_status status = make_folder(folder, err);
+    lc_status status = lc_program_folder(folder, err);
     if (status != LC_OK)
         return status;
     long cores = run->threads > 0 ? run->threads : sysconf(_SC_NPROCESSORS_ONLN);
@@ -245,7 +153,7 @@ lc_status lc_pov_render_text(double *rgb, const char *text, size_t length, int w
     if (status == LC_OK)
         status = average(rgb, film, width, height, s, err);
     lc_film_free(film);
-    remove_folder(folder);
+    lc_program_clear(folder);
     return status;
 }
 

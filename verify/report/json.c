@@ -37,6 +37,16 @@ static json_t *row_json(const lc_row *row)
     return o;
 }
 
+static json_t *notes_json(const lc_report *report)
+{
+    json_t *notes = json_array();
+    for (int i = 0; notes && i < report->note_count; ++i) {
+        const lc_note *n = &report->notes[i];
+        json_array_append_new(notes, json_pack("{s:s, s:s, s:s}", "check", n->check, "scene", n->scene, "reason", n->reason));
+    }
+    return notes;
+}
+
 lc_status lc_report_json(FILE *out, const lc_report *report, lc_error *err)
 {
     json_t *rows = json_array();
@@ -45,10 +55,11 @@ lc_status lc_report_json(FILE *out, const lc_report *report, lc_error *err)
     char seed[32];
     snprintf(seed, sizeof seed, "%llu",
              (unsigned long long)report->seed); /* 64 bits do not fit a JSON number everywhere */
-    json_t *o = json_pack("{s:s, s:s, s:s, s:s, s:o, s:o, s:i, s:I, s:o}", "program", "lightcheck", "version",
+    json_t *o = json_pack("{s:s, s:s, s:s, s:s, s:o, s:o, s:i, s:I, s:o, s:o}", "program", "lightcheck", "version",
                           LC_VERSION, "suite", report->suite, "seed", seed, "false_fail_probability",
                           number(report->false_fail), "false_pass_probability", number(report->false_pass),
-                          "not_applicable", report->not_applicable, "paths", (json_int_t)report->paths, "rows", rows);
+                          "not_applicable", report->not_applicable, "paths", (json_int_t)report->paths, "rows", rows, "no_row",
+                          notes_json(report));
     if (!o)
         return lc_fail(err, LC_FAULT, "out of memory for the JSON report");
     json_dumpf(o, out, JSON_INDENT(2) | JSON_REAL_PRECISION(12));

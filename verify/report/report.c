@@ -15,9 +15,29 @@ lc_row *lc_report_add(lc_report *report)
     return row;
 }
 
+lc_status lc_report_note(lc_report *report, const char *check, const char *scene, const char *reason, lc_error *err)
+{
+    lc_note note;
+    snprintf(note.check, sizeof note.check, "%.31s", check);
+    snprintf(note.scene, sizeof note.scene, "%.63s", scene);
+    snprintf(note.reason, sizeof note.reason, "%.255s", reason);
+    for (int i = 0; i < report->note_count; ++i) {
+        const lc_note *n = &report->notes[i];
+        if (strcmp(n->check, note.check) == 0 && strcmp(n->scene, note.scene) == 0 && strcmp(n->reason, note.reason) == 0)
+            return LC_OK;
+    }
+    lc_note *notes = realloc(report->notes, ((size_t)report->note_count + 1) * sizeof *notes);
+    if (!notes)
+        return lc_fail(err, LC_FAULT, "out of memory for the report");
+    report->notes = notes;
+    notes[report->note_count++] = note;
+    return LC_OK;
+}
+
 void lc_report_release(lc_report *report)
 {
     free(report->rows);
+    free(report->notes);
     memset(report, 0, sizeof *report);
 }
 

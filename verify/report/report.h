@@ -31,8 +31,13 @@ typedef struct lc_row {
     double
         missed; /* PASS: the largest contribution that could have been missed, in units of the mean of a sample; else 0 */
     char reason[512];    /* in words, for FAIL and UNDECIDED */
-    char reproduce[256]; /* a command line */
+    char reproduce[640]; /* a command line */
 } lc_row;
+
+/* What no row can be about, and why. */
+typedef struct lc_note {
+    char check[32], scene[64], reason[256];
+} lc_note;
 
 typedef struct lc_report {
     lc_row *rows;
@@ -41,6 +46,8 @@ typedef struct lc_report {
     char suite[16];
     double false_fail, false_pass; /* of the whole run */
     char budget[1024];             /* how they were split, in words */
+    lc_note *notes;
+    int note_count;
     int not_applicable;            /* pairs of estimator and scene that no check applies to */
     uint64_t paths;                /* rendered in all */
 } lc_report;
@@ -48,6 +55,8 @@ typedef struct lc_report {
 /* Appends a zeroed row, or NULL without memory. */
 lc_row *lc_report_add(lc_report *report);
 void lc_report_release(lc_report *report);
+/* Appends a note, unless the same is there; LC_FAULT without memory. */
+lc_status lc_report_note(lc_report *report, const char *check, const char *scene, const char *reason, lc_error *err);
 
 const char *lc_row_verdict_name(lc_row_verdict verdict); /* "PASS" ... */
 /* The exit status: WRONG if any row failed, else UNDECIDED if any is, else OK. No rows at all is BAD_INPUT. */

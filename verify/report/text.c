@@ -9,7 +9,7 @@
 
 void lc_report_text_header(FILE *out)
 {
-    fprintf(out, "%-10s %-18s %-20s %-5s %-9s %10s  %-22s %8s %9s\n", "check", "scene", "estimator", "k", "verdict",
+    fprintf(out, "%-11s %-24s %-20s %-5s %-9s %10s  %-22s %8s %9s\n", "check", "scene", "estimator", "k", "verdict",
             "estimate", "interval", "margin", "paths");
 }
 
@@ -41,7 +41,7 @@ void lc_report_text_row(FILE *out, const lc_row *row)
             snprintf(interval, sizeof interval, "(none yet)");
         snprintf(margin, sizeof margin, "%.2f%%", 100 * row->margin);
     }
-    fprintf(out, "%-10s %-18s %-20s %-5s %-9s %10s  %-22s %8s %9s", row->check, row->scene, row->estimator, bounces,
+    fprintf(out, "%-11s %-24s %-20s %-5s %-9s %10s  %-22s %8s %9s", row->check, row->scene, row->estimator, bounces,
             lc_row_verdict_name(row->verdict), estimate, interval, margin, paths);
 }
 
@@ -65,6 +65,10 @@ void lc_report_text(FILE *out, const lc_report *report)
         if (row->verdict != LC_ROW_PASS)
             print_trouble(out, row);
         ++counts[row->verdict];
+    }
+    for (int i = 0; i < report->note_count; ++i) {
+        const lc_note *n = &report->notes[i];
+        fprintf(out, "%s%-10s %-18s no row: %s\n", i ? "" : "\n", n->check, n->scene, n->reason);
     }
     fprintf(out, "\nestimate: mean of reflected light / what is expected, in the hardest of three channels; PASS: "
                  "shown within 1 +- margin.\n");

@@ -125,6 +125,8 @@ static inline void scale_desc(lc_scene_desc *desc, double scale)
     lc_affine s = pose_scale(scale, scale, scale);
     for (int i = 0; i < desc->shape_count; ++i)
         desc->shapes[i].to_world = lc_affine_multiply(&s, &desc->shapes[i].to_world);
+    for (int i = 0; i < desc->shape_count; ++i)
+        desc->shapes[i].motion = lc_scale(scale, desc->shapes[i].motion);
     for (int i = 0; i < desc->point_count; ++i) {
         desc->points[i].position = lc_scale(scale, desc->points[i].position);
         desc->points[i].intensity = lc_rgb_scale(scale * scale, desc->points[i].intensity);
@@ -133,6 +135,8 @@ static inline void scale_desc(lc_scene_desc *desc, double scale)
         desc->camera.to_world.m[i][3] *= scale; /* it stays rigid */
     desc->camera.near_clip *= scale;
     desc->camera.far_clip *= scale;
+    desc->camera.aperture_radius *= scale;
+    desc->camera.focus_distance *= scale;
 }
 
 #endif

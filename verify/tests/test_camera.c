@@ -2,6 +2,7 @@
 /* The camera against Mitsuba's convention, by cases worked out by hand: it looks along +z, +y is up, image right is -x. */
 #include "verify/tests/tests.h"
 
+#include "core/scene_c.h"
 #include "verify/tests/scene_help.h"
 
 static lc_camera_desc camera_of(double fov, lc_fov_axis axis)
@@ -125,6 +126,59 @@ START_TEST(near_and_far_clip)
 }
 END_TEST
 
+/* A lens of radius 0.5 focused at 3: rays start on the lens, one metre along the axis times the near clip further, uniform over its disk,
+ * and all of one image point meet in the plane z = 3. */
+START_TEST(lens_gathers_in_its_plane)
+{
+    enum { N = 4096 };
+    lc_camera_desc c = camera_of(90, LC_FOV_X);
+    lc_camera_frame frame;
+    int ring[4] = {0, 0, 0, 0}, quadrant[4] = {0, 0, 0, 0};
+    c.aperture_radius = 0.5;
+    c.focus_distance = 3;
+    c.near_clip = 0.25;
+    lc_camera_prepare(&frame, &c, 8, 8);
+    for (uint32_t k = 0; k < N; ++k) {
+        lc_sampler sampler, again;
+        lc_sampler_start(&sampler, 3, 1, 0, k);
+        again = sampler;
+        lc_ray ray = lc_camera_sample(&frame, &sampler, 6, 2);
+        ck_assert_uint_eq(sampler.dimension, 4); /* two of the pixel, two of the lens */
+        double x = 6 + lc_next(&again), y = 2 + lc_next(&again);
+        ck_assert_double_eq_tol(lc_length(ray.d), 1, 1e-15);
+        ck_assert_double_eq_tol(ray.o.z, 0.25, 1e-15);
+        ck_vec(lc_add(ray.o, lc_scale((3 - ray.o.z) / ray.d.z, ray.d)), 3 * (1 - x / 4), 3 * (1 - y / 4), 3);
+        lc_vec3 lens = lc_sub(ray.o, lc_scale(0.25 / ray.d.z, ray.d));
+        double r = hypot(lens.x, lens.y) / 0.5;
+        ck_assert(r < 1 + 1e-12);
+        ++ring[(int)fmin(3, 4 * r * r)];
+        ++quadrant[(lens.x > 0) + 2 * (lens.y > 0)];
+    }
+    for (int i = 0; i < 4; ++i) { /* six sigma of a quarter */
+        ck_assert_double_eq_tol(ring[i] / (double)N, 0.25, 6 * sqrt(0.1875 / N));
+        ck_assert_double_eq_tol(quadrant[i] / (double)N, 0.25, 6 * sqrt(0.1875 / N));
+    }
+    ck_vec(on_plane(&c, 8, 8, 4, 4), 0, 0, 1); /* lc_camera_ray() looks through the centre */
+}
+END_TEST
+
+START_TEST(impossible_lenses_are_refused)
+{
+    static const double lenses[][2] = {{-1, 1}, {INFINITY, 1}, {NAN, 1}, {1, 0}, {1, -2}, {1, INFINITY}, {1, NAN}};
+    for (size_t i = 0; i < sizeof lenses / sizeof lenses[0]; ++i) {
+        lc_scene_desc desc;
+        lc_scene *scene = NULL;
+        lc_error err = {""};
+        lc_scene_desc_init(&desc);
+        desc.camera.aperture_radius = lenses[i][0];
+        desc.camera.focus_distance = lenses[i][1];
+        ck_assert_int_eq(lc_scene_build(&scene, &desc, &err), LC_BAD_INPUT);
+        ck_assert_ptr_nonnull(strstr(err.text, "lens"));
+        lc_scene_desc_release(&desc);
+    }
+}
+END_TEST
+
 Suite *lc_suite_camera(void)
 {
     Suite *suite = suite_create("camera");
@@ -135,6 +189,8 @@ Suite *lc_suite_camera(void)
     tcase_add_test(tc, default_lens);
     tcase_add_test(tc, posed_camera);
     tcase_add_test(tc, near_and_far_clip);
+    tcase_add_test(tc, lens_gathers_in_its_plane);
+    tcase_add_test(tc, impossible_lenses_are_refused);
     suite_add_tcase(suite, tc);
     return suite;
 }

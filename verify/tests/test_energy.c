@@ -9,7 +9,7 @@
 #include "verify/stats/stats.h"
 #include "verify/tests/tests.h"
 
-static const lc_share share = {1e-8, 1e-8, 0.01, 1};
+static const lc_share share = {1e-8, 1e-8, 0.01, 1, 0, 0};
 
 static int material_of(const char *name)
 {
@@ -232,6 +232,79 @@ static int sample_leaks(const lc_scene *scene, const lc_hit *hit, lc_sampler *sa
     return some && lc_next(sampler) >= 1e-3;
 }
 
+/* ---- rough mirrors ---- */
+
+/* Smith's G1 of the direction, from the closed form's own tangents. */
+static double unmasked(const lc_scene *scene, const lc_hit *hit, lc_vec3 w)
+{
+    double c = fabs(lc_dot(hit->n, w)), a = lc_material_at(scene, hit).alpha;
+    return 2 / (1 + sqrt(1 + a * a * (1 - c * c) / (c * c)));
+}
+
+static lc_rgb eval_never_masked(const lc_scene *scene, const lc_hit *hit, lc_vec3 wi)
+{
+    return times(1 / (unmasked(scene, hit, wi) * unmasked(scene, hit, hit->wo)), lc_bsdf_eval(scene, hit, wi));
+}
+static int sample_never_masked(const lc_scene *scene, const lc_hit *hit, lc_sampler *sampler, lc_scatter *out)
+{
+    int some = lc_bsdf_sample(scene, hit, sampler, out);
+    if (some)
+        out->value = eval_never_masked(scene, hit, out->wi);
+    return some;
+}
+
+static lc_rgb eval_masked_once(const lc_scene *scene, const lc_hit *hit, lc_vec3 wi)
+{
+    return times(1 / unmasked(scene, hit, wi), lc_bsdf_eval(scene, hit, wi));
+}
+static int sample_masked_once(const lc_scene *scene, const lc_hit *hit, lc_sampler *sampler, lc_scatter *out)
+{
+    int some = lc_bsdf_sample(scene, hit, sampler, out);
+    if (some)
+        out->value = eval_masked_once(scene, hit, out->wi);
+    return some;
+}
+
+/* The density of the facet, not of the direction: no Jacobian 4 (wo . h). */
+static double pdf_of_facets(const lc_scene *scene, const lc_hit *hit, lc_vec3 wi)
+{
+    return 4 * lc_dot(hit->wo, lc_normalize(lc_add(hit->wo, wi))) * lc_bsdf_pdf(scene, hit, wi);
+}
+static int sample_facets(const lc_scene *scene, const lc_hit *hit, lc_sampler *sampler, lc_scatter *out)
+{
+    int some = lc_bsdf_sample(scene, hit, sampler, out);
+    if (some)
+        out->pdf = pdf_of_facets(scene, hit, out->wi);
+    return some;
+}
+
+/* All facets, by D cos, where pdf() says those that wo sees (Walter et al. 2007, eq. 35, 36). */
+static int sample_all_normals(const lc_scene *scene, const lc_hit *hit, lc_sampler *sampler, lc_scatter *out)
+{
+    double a = lc_material_at(scene, hit).alpha;
+    if (!lc_bsdf_sample(scene, hit, sampler, out))
+        return 0;
+    for (int k = 0; k < 4096; ++k) {
+        double u = lc_next(sampler), v = lc_next(sampler), cosine = 1 / sqrt(1 + a * a * u / (1 - u));
+        lc_vec3 m = lc_uniform_hemisphere(lc_facing(hit->n, hit->wo), 1 - cosine, v);
+        out->wi = lc_reflect(hit->wo, m);
+        out->pdf = lc_bsdf_pdf(scene, hit, out->wi);
+        out->value = lc_bsdf_eval(scene, hit, out->wi);
+        if (lc_dot(m, hit->wo) > 1e-6 && out->pdf > 0)
+            break;
+    }
+    return 1;
+}
+
+/* Draws again below the horizon, and forgets that this makes all else likelier. */
+static int sample_above_only(const lc_scene *scene, const lc_hit *hit, lc_sampler *sampler, lc_scatter *out)
+{
+    int some = lc_bsdf_sample(scene, hit, sampler, out);
+    for (int k = 0; k < 4096 && some && lc_dot(hit->n, out->wi) * lc_dot(hit->n, hit->wo) <= 0; ++k)
+        some = lc_bsdf_sample(scene, hit, sampler, out);
+    return some;
+}
+
 static const struct {
     const char *name, *material;
     lc_bsdf_functions bsdf;
@@ -258,6 +331,15 @@ static const struct {
     {"one in 1000 below", "diffuse_half", {lc_bsdf_eval, lc_bsdf_pdf, sample_below}, "pdf()"},
     {"sample's pdf is not pdf()", "mirror_half", {lc_bsdf_eval, lc_bsdf_pdf, sample_other_pdf}, "sample()'s pdf"},
     {"a coin for Fresnel", "glass_1.5", {lc_bsdf_eval, lc_bsdf_pdf, sample_coin}, "do not follow pdf()"},
+    {"no masking", "glossy_0.3", {eval_never_masked, lc_bsdf_pdf, sample_never_masked}, "directional albedo"},
+    {"masked once", "glossy_0.3", {eval_masked_once, lc_bsdf_pdf, sample_masked_once}, "not reciprocal"},
+    {"pdf of facets", "glossy_0.05", {lc_bsdf_eval, pdf_of_facets, sample_facets}, "integral of pdf()"},
+    {"pdf of facets", "glossy_1.0", {lc_bsdf_eval, pdf_of_facets, sample_facets}, "integral of pdf()"},
+    {"all normals", "glossy_0.3", {lc_bsdf_eval, lc_bsdf_pdf, sample_all_normals}, "do not follow pdf()"},
+    {"all normals", "glossy_1.0", {lc_bsdf_eval, lc_bsdf_pdf, sample_all_normals}, "do not follow pdf()"},
+    {"only above", "glossy_1.0", {lc_bsdf_eval, lc_bsdf_pdf, sample_above_only}, "do not follow pdf()"},
+    {"sample's pdf is not pdf()", "glossy_blend", {lc_bsdf_eval, lc_bsdf_pdf, sample_other_pdf}, "sample()'s pdf"},
+    {"f asymmetric", "glossy_0.01", {eval_asymmetric, lc_bsdf_pdf, sample_asymmetric}, "not reciprocal"},
     {"one in 1000 lost", "mirror", {lc_bsdf_eval, lc_bsdf_pdf, sample_leaks}, "absorbed"},
 };
 enum { MUTANTS = sizeof mutants / sizeof mutants[0] };

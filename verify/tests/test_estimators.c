@@ -59,7 +59,7 @@ static void ck_descriptor(const lc_estimator *e)
         ck_assert_msg(isalnum((unsigned char)*c) || *c == '_', "%s", e->name);
     ck_assert_msg(strlen(e->summary) > 0 && !strchr(e->summary, '\n'), "%s: summary", e->name);
     ck_assert_msg(strlen(e->source) > 0 && !strchr(e->source, '\n'), "%s: source", e->name);
-    ck_assert_uint_eq(e->lobes & ~(unsigned)(LC_DIFFUSE | LC_MIRROR | LC_GLASS), 0);
+    ck_assert_uint_eq(e->lobes & ~(unsigned)(LC_DIFFUSE | LC_MIRROR | LC_GLASS | LC_GLOSSY), 0);
     ck_assert_uint_eq(e->emitters & ~(unsigned)(LC_AREA | LC_POINT | LC_DIRECTIONAL | LC_SKY), 0);
     ck_assert(e->max_bounces >= 0 && e->max_bounces <= LC_UNBOUNDED);
     ck_assert(e->radiance != NULL);
@@ -76,7 +76,8 @@ START_TEST(descriptors_are_sane)
         for (const lc_estimator *const *f = lc_estimators; f < e; ++f)
             ck_assert_str_ne((*e)->name, (*f)->name);
     }
-    for (const lc_mutant *m = lc_mutants; m->estimator; ++m) {
+    const lc_mutant *m;
+    for (int i = 0; (m = lc_mutant_at(i)) != NULL; ++i) {
         int known = 0;
         ck_descriptor(m->estimator);
         for (const lc_estimator *const *e = lc_estimators; *e; ++e)

@@ -116,7 +116,7 @@ static void compare(const char *name, const char *scene_name, int width, int hei
                                .shard = shard,
                                .shards = shards};
         ck_assert_int_eq(lc_render(ours, scene, e, &o, NULL), LC_OK);
-        lc_status status = lc_jail_render(jail, theirs, scene, &o, &err);
+        lc_status status = lc_render(theirs, scene, lc_jail_estimator(jail), &o, &err);
         ck_assert_msg(status == LC_OK, "%s: %s", path, err.text);
         ck_assert_int_eq(lc_jail_last(jail)->code, LC_JAIL_AC);
     }
@@ -173,7 +173,7 @@ START_TEST(test_jail_honest_faults)
     snprintf(path, sizeof path, "%s/kept.cpp", folder);
     write_source(path, PLUGIN("if (lc_next(m) < 0) throw 1;\n"));
     lc_jail *jail = open_honest(path);
-    ck_assert_msg(lc_jail_render(jail, film, scene, &o, &err) == LC_OK, "%s", err.text);
+    ck_assert_msg(lc_render(film, scene, lc_jail_estimator(jail), &o, &err) == LC_OK, "%s", err.text);
     lc_jail_close(jail);
     lc_film_free(film);
 
@@ -181,7 +181,7 @@ START_TEST(test_jail_honest_faults)
     snprintf(path, sizeof path, "%s/kept.c", folder);
     write_source(path, PLUGIN("static int n; if (n++ == 5) { printf(\"five\\n\"); return lc_color(NAN, 0, 0); }\n"));
     jail = open_honest(path);
-    ck_assert_msg(lc_jail_render(jail, film, scene, &o, &err) == LC_OK, "%s", err.text);
+    ck_assert_msg(lc_render(film, scene, lc_jail_estimator(jail), &o, &err) == LC_OK, "%s", err.text);
     ck_assert_uint_eq(film->bad, 1);
     ck_assert_int_eq(film->bad_x, 2);
     ck_assert_int_eq(film->bad_y, 0);
@@ -193,7 +193,7 @@ START_TEST(test_jail_honest_faults)
     film = make_film(8, 8);
     write_source(path, PLUGIN("assert(!s);\n"));
     jail = open_honest(path);
-    ck_assert_int_eq(lc_jail_render(jail, film, scene, &o, &err), LC_WRONG);
+    ck_assert_int_eq(lc_render(film, scene, lc_jail_estimator(jail), &o, &err), LC_WRONG);
     ck_assert_int_eq(lc_jail_last(jail)->code, LC_JAIL_RTE);
     ck_assert_ptr_nonnull(strstr(lc_jail_said(jail), "Assertion `!s' failed"));
     lc_jail_close(jail);
@@ -256,7 +256,7 @@ static void contain(const lc_scene *scene, const lc_film *right, int i, const lc
     if (status == LC_OK) {
         lc_film *film = make_film(SIDE, SIDE);
         lc_render_options o = {.max_bounces = 1, .count = SAMPLES, .threads = 1};
-        status = lc_jail_render(jail, film, scene, &o, &err);
+        status = lc_render(film, scene, lc_jail_estimator(jail), &o, &err);
         why = *lc_jail_last(jail);
         ck_assert_msg(status != LC_OK || !earns_a_pass(film, right), "%s: passes", name);
         check_quiet(name, lc_jail_said(jail));
@@ -283,7 +283,7 @@ static void contain_all(unsigned parts)
     ck_assert_int_eq(lc_render(right, scene, find("light_direct"), &o, NULL), LC_OK);
     lc_jail *jail = open_honest("estimators/light_direct.c");
     o.arm = 6;
-    ck_assert_int_eq(lc_jail_render(jail, honest, scene, &o, NULL), LC_OK);
+    ck_assert_int_eq(lc_render(honest, scene, lc_jail_estimator(jail), &o, NULL), LC_OK);
     ck_assert(earns_a_pass(honest, right));
     ck_assert_msg(lc_jail_parts(jail) == parts, "%s", lc_jail_level(jail));
     lc_jail_close(jail);
@@ -396,7 +396,7 @@ static void break_out(const char *name, unsigned without)
     options.parts &= ~without;
     options.any_symbol = 1;
     ck_assert_msg(lc_jail_open(&jail, path, &options, NULL, &err) == LC_OK, "%s", err.text);
-    ck_assert_int_eq(lc_jail_render(jail, film, scene, &o, &err), LC_OK);
+    ck_assert_int_eq(lc_render(film, scene, lc_jail_estimator(jail), &o, &err), LC_OK);
     ck_assert_msg(strstr(lc_jail_said(jail), "BROKE OUT"), "%s: %s", name, lc_jail_said(jail));
     lc_film_free(film);
     lc_scene_free(scene);

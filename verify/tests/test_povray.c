@@ -78,6 +78,10 @@ START_TEST(export_says_what_each_part_is)
     ck_assert_ptr_nonnull(strstr(text, "emission rgb <1, 2, 3>"));
     free(text);
     free(again);
+    desc.camera.aperture_radius = desc.camera.focus_distance = 1;
+    ck_assert_int_eq(export_text(&text, &desc, &options), LC_BAD_INPUT);
+    ck_assert_ptr_nonnull(strstr(err.text, "a lens"));
+    free(text);
     lc_scene_desc_release(&desc);
 }
 END_TEST
@@ -92,6 +96,10 @@ static const struct {
     {HEAD "<shape type=\"sphere\">" GLASS "</shape></scene>", LC_POV_DIRECT, "through glass"},
     {HEAD "<shape type=\"sphere\">" MIRROR("1") "</shape></scene>", LC_POV_RADIOSITY, "off a mirror"},
     {HEAD "<shape type=\"sphere\"/></scene>", LC_POV_SPECULAR, "diffuse"},
+    {HEAD "<shape type=\"sphere\"><vector name=\"motion\" value=\"1 0 0\"/></shape></scene>", LC_POV_DIRECT, "moves"},
+    {HEAD "<shape type=\"sphere\"><bsdf type=\"roughconductor\"><string name=\"distribution\" value=\"ggx\"/></bsdf>"
+          "</shape></scene>",
+     LC_POV_SPECULAR, "no rough mirror"},
     {HEAD "<shape type=\"rectangle\">" GLASS "</shape></scene>", LC_POV_SPECULAR, "volume"},
     {HEAD "<shape type=\"sphere\">" GLASS "</shape><shape type=\"cube\">" GLASS "</shape></scene>", LC_POV_SPECULAR,
      "other glass"},
@@ -102,7 +110,7 @@ static const struct {
     {HEAD "<shape type=\"sphere\"><bsdf type=\"diffuse\">" CHECKER("reflectance") "</bsdf></shape></scene>",
      LC_POV_DIRECT, "rectangles only"},
     {HEAD "<shape type=\"rectangle\"><emitter type=\"area\">" CHECKER("radiance") "</emitter></shape></scene>",
-     LC_POV_DIRECT, "cut it"},
+     LC_POV_DIRECT, "many lamps"},
 };
 
 START_TEST(what_cannot_be_expressed_is_refused_with_the_reason)
@@ -441,6 +449,8 @@ static void brighten_sun(lc_scene_desc *desc)
     desc->directionals[0].irradiance = lc_rgb_scale(1.01, desc->directionals[0].irradiance);
 }
 
+static void brighten_sky(lc_scene_desc *desc) { desc->sky = lc_rgb_scale(1.01, desc->sky); }
+
 /* By 2% of the Cornell box's 2 m. */
 static void move_box(lc_scene_desc *desc)
 {
@@ -474,6 +484,9 @@ static const struct {
     {"mirror_corridor", "mirror", NULL, LC_ROW_PASS},
     {"mirror_corridor", "mirror", brighten_lamp, LC_ROW_FAIL},
     {"glass_slab", "dielectric", brighten_lamp, LC_ROW_FAIL},
+    {"textured_lamp", "light_direct", NULL, LC_ROW_PASS},
+    {"textured_lamp", "light_direct", brighten_lamp, LC_ROW_FAIL},
+    {"sky", "hemisphere_direct", brighten_sky, LC_ROW_FAIL},
     {"bright_room", "path", brighten_room, LC_ROW_FAIL},
 };
 
@@ -510,7 +523,7 @@ START_TEST(pixels_beyond_the_band_are_left_out)
 {
     char path[LC_PATH_SIZE];
     lc_scene *scene;
-    lc_claims claims = {NULL, 0};
+    lc_claims claims = {.count = 0};
     lc_pov_image image;
     lc_estimator copy = *find_estimator("light_direct");
     const lc_check *const *check = lc_checks;

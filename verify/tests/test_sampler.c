@@ -127,7 +127,8 @@ static const char *name_of(int i)
         ++estimators;
     if (i < estimators)
         return lc_estimators[i]->name;
-    return lc_mutants[i - estimators].estimator ? lc_mutants[i - estimators].estimator->name : NULL;
+    const lc_mutant *mutant = lc_mutant_at(i - estimators);
+    return mutant ? mutant->estimator->name : NULL;
 }
 
 /* Also under the names that the judge gives to those outside the registry, and to its pilots (the complement). */

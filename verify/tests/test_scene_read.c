@@ -153,6 +153,66 @@ START_TEST(default_materials_are_mitsubas)
 }
 END_TEST
 
+#define LENS(properties) \
+    "<scene version='3.0.0'><sensor type='thinlens'>" properties FILM "</sensor></scene>"
+#define APERTURE "<float name='aperture_radius' value='0.25'/>"
+#define FOCUS "<float name='focus_distance' value='3'/>"
+
+START_TEST(motion_of_shapes)
+{
+    accept(SCENE("<shape type='sphere'><vector name='motion' value='1 -2 .5'/></shape><shape type='disk'/>"));
+    vec_is(d.shapes[0].motion, 1, -2, .5);
+    vec_is(d.shapes[1].motion, 0, 0, 0);
+    lc_scene_desc_release(&d);
+    refuse(SCENE("<shape type='disk'><float name='motion' value='1'/></shape>"), "expected point, vector");
+    refuse(SCENE("<shape type='disk'><vector name='motion' x='1'/></shape>"), "all of x, y and z");
+}
+END_TEST
+
+START_TEST(thin_lens)
+{
+    accept(LENS(APERTURE FOCUS "<float name='fov' value='40'/><float name='near_clip' value='0.5'/>"));
+    ck_assert_double_eq(d.camera.aperture_radius, .25);
+    ck_assert_double_eq(d.camera.focus_distance, 3);
+    ck_assert_double_eq(d.camera.fov, 40);
+    ck_assert_double_eq(d.camera.near_clip, .5);
+    lc_scene_desc_release(&d);
+    accept(SCENE(""));
+    ck_assert_double_eq(d.camera.aperture_radius, 0);
+    lc_scene_desc_release(&d);
+}
+END_TEST
+
+#define ROUGH(properties) \
+    "<bsdf type='roughconductor'><string name='distribution' value='ggx'/>" properties "</bsdf>"
+
+START_TEST(rough_conductors)
+{
+    accept(RECTANGLE(ROUGH("<float name='alpha' value='.3'/><boolean name='sample_visible' value='false'/>"
+                           "<rgb name='specular_reflectance' value='.9 .5 0'/><string name='material' value='none'/>")));
+    color_is(d.materials[0].side[0].glossy, .9, .5, 0);
+    ck_assert_double_eq(d.materials[0].side[0].alpha, .3);
+    color_is(d.materials[0].side[1].glossy, 0, 0, 0);
+    ck_assert_double_eq(d.materials[0].side[1].alpha, 0);
+    color_is(d.materials[0].side[0].mirror, 0, 0, 0);
+    lc_scene_desc_release(&d);
+    /* .25 diffuse + .75 (.4 rough on the front, the same on the back, + .6 rough of the same alpha, on the front) */
+    accept(RECTANGLE(
+        "<bsdf type='blendbsdf'><float name='weight' value='.75'/><bsdf type='diffuse'/><bsdf type='blendbsdf'><float "
+        "name='weight' value='.6'/><bsdf type='twosided'>" ROUGH("") "</bsdf>" ROUGH("") "</bsdf></bsdf>"));
+    color_is(d.materials[0].side[0].glossy, .75, .75, .75);
+    color_is(d.materials[0].side[1].glossy, .3, .3, .3);
+    ck_assert_double_eq(d.materials[0].side[0].alpha, .1);
+    ck_assert_double_eq(d.materials[0].side[1].alpha, .1);
+    lc_scene_desc_release(&d);
+    /* A share of 0 has no roughness to differ in. */
+    accept(RECTANGLE("<bsdf type='blendbsdf'><float name='weight' value='0'/>" ROUGH("") ROUGH(
+        "<float name='alpha' value='.2'/>") "</bsdf>"));
+    ck_assert_double_eq(d.materials[0].side[0].alpha, .1);
+    lc_scene_desc_release(&d);
+}
+END_TEST
+
 #define GRAY(v) "<bsdf type='diffuse'><float name='reflectance' value='" v "'/></bsdf>"
 
 START_TEST(blend_gives_the_weight_to_the_second)
@@ -370,6 +430,17 @@ START_TEST(bad_scenes)
          "both"},
         {SCENE("<emitter type='point'><point name='position' x='0' y='1'/></emitter>"), "all of x, y and z"},
         {RECTANGLE("<bsdf type='conductor'><string name='material' value='Au'/></bsdf>"), "supported: none"},
+        {LENS(FOCUS), "thinlens without aperture_radius"},
+        {LENS(APERTURE), "thinlens without focus_distance"},
+        {LENS("<float name='aperture_radius' value='0'/>" FOCUS), "aperture_radius 0 is not positive"},
+        {LENS(APERTURE "<float name='focus_distance' value='-1'/>"), "focus_distance -1 is not positive"},
+        {CAMERA(APERTURE, SIZE("8")), "unknown property 'aperture_radius'"},
+        {RECTANGLE("<bsdf type='roughconductor'/>"), "Mitsuba's default is beckmann"},
+        {RECTANGLE(ROUGH("<string name='material' value='Cu'/>")), "supported: none"},
+        {RECTANGLE(ROUGH("<float name='alpha' value='0.005'/>")), "expected 0.01 to 1"},
+        {RECTANGLE(ROUGH("<float name='alpha' value='1.5'/>")), "expected 0.01 to 1"},
+        {RECTANGLE(ROUGH("<float name='alpha_u' value='.1'/>")), "unknown property 'alpha_u'"},
+        {BLEND(W, ROUGH("<float name='alpha' value='.2'/>"), ROUGH("")), "different alpha"},
         {RECTANGLE("<bsdf type='dielectric'><string name='int_ior' value='ice'/></bsdf>"), "unknown material 'ice'"},
         {RECTANGLE(GLASS("0")), "not positive"},
         {BLEND("", GRAY(".1"), GRAY(".1")), "weight"},
@@ -531,6 +602,9 @@ Suite *lc_suite_scene_read(void)
     tcase_add_test(tc, sphere_center_and_radius_come_before_to_world);
     tcase_add_test(tc, default_materials_are_mitsubas);
     tcase_add_test(tc, blend_gives_the_weight_to_the_second);
+    tcase_add_test(tc, rough_conductors);
+    tcase_add_test(tc, thin_lens);
+    tcase_add_test(tc, motion_of_shapes);
     tcase_add_test(tc, twosided_has_a_back);
     tcase_add_test(tc, checkerboards);
     tcase_add_test(tc, integrators);

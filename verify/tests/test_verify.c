@@ -9,7 +9,9 @@
 #include "estimators/registry.h"
 #include "io/scene_path.h"
 #include "io/scene_read.h"
+#include "verify/checks/family.h"
 #include "verify/judge/judge_c.h"
+#include "verify/stats/stats.h"
 #include "verify/tests/scene_help.h"
 
 enum { SIDE = 16 };
@@ -249,7 +251,7 @@ END_TEST
 /* The statistical claims that a suite makes about a scene. */
 static lc_claims claims_about(const lc_suite *suite, const lc_scene *scene)
 {
-    lc_claims claims = {NULL, 0};
+    lc_claims claims = {.count = 0};
     lc_error err = {""};
     for (const lc_estimator *const *e = lc_estimators; *e; ++e)
         for (const lc_check *const *c = lc_checks; *c; ++c)
@@ -257,7 +259,7 @@ static lc_claims claims_about(const lc_suite *suite, const lc_scene *scene)
                 ck_assert_msg((*c)->plan(*c, &claims, scene, *e, &err) == LC_OK, "%s", err.text);
     int kept = 0;
     for (int i = 0; i < claims.count; ++i)
-        if (!claims.items[i].exact && !(claims.items[i].full_only && strcmp(suite->name, "quick") == 0))
+        if (!claims.items[i].exact && lc_suite_has(suite, &claims.items[i]))
             claims.items[kept++] = claims.items[i];
     claims.count = kept;
     return claims;
@@ -267,7 +269,25 @@ static lc_claims claims_about(const lc_suite *suite, const lc_scene *scene)
 static int takes_film(const lc_claim *claim, const lc_estimator *estimator, const lc_claim *of)
 {
     return (claim->estimator == estimator || claim->other == estimator) && claim->scene == of->scene &&
-           claim->min_bounces == of->min_bounces && claim->max_bounces == of->max_bounces;
+           claim->min_bounces == of->min_bounces && claim->max_bounces == of->max_bounces && !claim->term_count &&
+           !claim->decide;
+}
+
+static double margin_of(const lc_suite *suite, const lc_claim *claim, double c)
+{
+    return fmax(suite->margin * (claim->slack > 0 ? claim->slack : 1) * fmax(1, c), claim->margin);
+}
+
+/* Films of a relation: over the scene and each term; paired, the scene's once more. Of powers of two all samples agree, so that one
+ * block is enough; else the first look is. */
+static double planned_of_relation(const lc_suite *suite, const lc_claim *claim)
+{
+    const lc_scene_desc *desc = lc_scene_description(claim->scene);
+    double pixels = (double)desc->width * desc->height, arms = 1 + claim->term_count + (claim->paired ? 1 : 0);
+    if (claim->paired && claim->slack <= 1)
+        return arms * LC_BLOCK * pixels;
+    return arms * fmax(LC_LEAST_SAMPLES * pixels,
+                       (double)lc_planned_samples(1.5, 1.5 * margin_of(suite, claim, 1), 1));
 }
 
 /* c as the judge takes it: from the table, else from a pilot. */
@@ -291,7 +311,7 @@ static double noise_of(const lc_claim *claim, const lc_estimator *estimator)
 static double planned_for(const lc_suite *suite, const lc_claim *claim)
 {
     double c = noise_of(claim, claim->estimator), hub = claim->other ? noise_of(claim, claim->other) : 0;
-    double margin = fmax(suite->margin * fmax(1, c), claim->margin);
+    double margin = margin_of(suite, claim, c);
     double room = claim->margin > 0 ? margin - claim->tolerance : margin;
     return (double)lc_planned_samples(hypot(c, hub), room, 1);
 }
@@ -302,11 +322,15 @@ static double planned_of(const lc_suite *suite, const char *name)
     lc_scene *scene;
     lc_error err = {""};
     double planned = 0;
-    ck_assert_msg(load_small(&scene, name, &err) == LC_OK, "%s", err.text);
+    ck_assert_msg(lc_suite_scene(&scene, name, 1, load_small, &err) == LC_OK, "%s", err.text);
     lc_claims claims = claims_about(suite, scene);
-    for (int i = 0; i < claims.count; ++i)
+    for (int i = 0; i < claims.count; ++i) {
+        const lc_claim *claim = &claims.items[i];
+        if (claim->decide || claim->term_count) {
+            planned += claim->decide ? 2e6 /* at most, by checks/convergence.c */ : planned_of_relation(suite, claim);
+            continue;
+        }
         for (int arm = 0; arm < 2; ++arm) {
-            const lc_claim *claim = &claims.items[i];
             const lc_estimator *estimator = arm ? claim->other : claim->estimator;
             double most = 0;
             int is_first = estimator != NULL;
@@ -317,6 +341,7 @@ static double planned_of(const lc_suite *suite, const char *name)
                     most = fmax(most, planned_for(suite, &claims.items[k]));
             planned += most;
         }
+    }
     lc_claims_release(&claims);
     lc_scene_free(scene);
     return planned;

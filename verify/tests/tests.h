@@ -13,6 +13,8 @@ void lc_test_restore_root(uid_t before);
 
 Suite *lc_suite_affine(void);
 Suite *lc_suite_scene_read(void);
+Suite *lc_suite_scene_write(void);
+Suite *lc_suite_adapter(void);
 Suite *lc_suite_status(void);
 Suite *lc_suite_film(void);
 Suite *lc_suite_analytic(void);
@@ -31,6 +33,8 @@ Suite *lc_suite_surface(void);
 Suite *lc_suite_render(void);
 Suite *lc_suite_bsdf(void);
 Suite *lc_suite_energy(void);
+Suite *lc_suite_effects(void);
+Suite *lc_suite_motion(void);
 Suite *lc_suite_cli(void);
 Suite *lc_suite_report(void);
 Suite *lc_suite_estimators(void);
@@ -41,5 +45,11 @@ Suite *lc_suite_mutants(void);
 Suite *lc_suite_plugin(void);
 Suite *lc_suite_jail(void);
 Suite *lc_suite_sensitivity(void);
+Suite *lc_suite_nee(void);
+Suite *lc_suite_metamorphic(void);
+Suite *lc_suite_family(void);
+Suite *lc_suite_lecture(void);
+Suite *lc_suite_convergence(void);
+Suite *lc_suite_diagnose(void);
 
 #endif

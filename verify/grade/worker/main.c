@@ -53,7 +53,7 @@ static lc_rgb record(const lc_scene *scene, const lc_ray *ray, const lc_hit *hit
     out.buffer[out.used++] = c.b;
     if (out.used == sizeof out.buffer / sizeof out.buffer[0])
         flush();
-    return c;
+    return lc_black(); /* never bad: lc_render goes on to all terms of a sample, and its film is nothing to us */
 }
 
 static int greet(unsigned reached, lc_status status, const char *error)
@@ -105,6 +105,18 @@ static int describe(const lc_estimator *e, const char *error)
     return send_all(&d, sizeof d);
 }
 
+static lc_status build(lc_scene **scene, lc_wire_request *request, lc_error *err)
+{
+    lc_status status = lc_scene_build(scene, &request->scenes[0], err);
+    for (int i = 0; i < request->options.minus_count && status == LC_OK; ++i) {
+        lc_scene *other;
+        status = lc_scene_build(&other, &request->scenes[1 + i], err);
+        request->terms[i].scene = other;
+    }
+    request->options.minus = request->terms;
+    return status;
+}
+
 static int render(const lc_wire_request *request, const lc_scene *scene, const lc_estimator *estimator, int index,
                   int count)
 {
@@ -124,18 +136,17 @@ static int render(const lc_wire_request *request, const lc_scene *scene, const l
 
 int main(int argc, char **argv)
 {
-    lc_scene_desc desc;
     lc_scene *scene = NULL;
     lc_error err = {""};
     const char *error = "";
-    const lc_wire_request *request = lc_wire_read(LC_WIRE_REQUEST, &desc);
+    lc_wire_request *request = lc_wire_read(LC_WIRE_REQUEST);
     int null = open("/dev/null", O_RDONLY | O_CLOEXEC);
     if (argc != 4 || !request || null < 0 || dup2(null, LC_WIRE_REQUEST) < 0)
         return !greet(0, LC_FAULT, request ? "no descriptors" : "not called by a program of the same build");
     close(null);
     if (!lc_confine_follow(atoi(argv[1])))
         return 3;
-    if (request->task == LC_WIRE_RENDER && lc_scene_build(&scene, &desc, &err) != LC_OK)
+    if (request->task == LC_WIRE_RENDER && build(&scene, request, &err) != LC_OK)
         return !greet(0, LC_FAULT, err.text);
     if (!greet(lc_confine_worker(&request->confinement, LC_WIRE_SAMPLES), LC_OK, ""))
         return 3;

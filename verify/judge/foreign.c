@@ -1,0 +1,430 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ *
+ * Claims about another program, of which there are images only. An image of `samples` paths a pixel is one sample of each
+ * pixel; images of independent seeds make a film like any other, and the same judge decides.
+ *
+ * Reflected light is the image less L_0, which is known exactly: pixels where it is not one value (a lamp's edge) are left
+ * out, for there the noise of the lamp is all that an image shows. Pixels of one image may move together; how much is
+ * measured at each scale from the images themselves (lc_pyramid_plan.inflation).
+ */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "verify/judge/judge_c.h"
+
+/* Images before the first test, of a pilot, and the paths a pixel of its images. At a second look, four times as many. */
+enum { IMAGES = LC_LEAST_SAMPLES, PILOT_IMAGES = LC_BLOCK, PILOT_SAMPLES = 4, LOOKS = 2, MOST_FILMS = 32 };
+
+/* Mean and sum of squares of a tile's sum over the images. */
+typedef struct tile_spread {
+    double mean, m2;
+} tile_spread;
+
+typedef struct foreign_film {
+    int min_bounces, max_bounces, samples, is_pilot;
+    lc_film *film;
+    tile_spread *tiles[LC_LEVELS]; /* 3 a tile, row by row */
+} foreign_film;
+
+typedef struct lc_foreign {
+    const lc_scene *scene;
+    lc_expected glow; /* L_0 of each pixel, and where it is not one value */
+    foreign_film films[MOST_FILMS];
+    int film_count;
+} lc_foreign;
+
+int lc_is_foreign(const lc_session *session, const lc_estimator *estimator)
+{
+    return session->options->renderer && estimator == &session->options->renderer->estimator;
+}
+
+static void free_film(foreign_film *f)
+{
+    lc_film_free(f->film);
+    for (int l = 0; l < LC_LEVELS; ++l)
+        free(f->tiles[l]);
+}
+
+void lc_foreign_free(lc_foreign *foreign)
+{
+    if (!foreign)
+        return;
+    for (int i = 0; i < foreign->film_count; ++i)
+        free_film(&foreign->films[i]);
+    free(foreign->glow.rgb);
+    free(foreign->glow.skip);
+    free(foreign);
+}
+
+/* ---- L_0 --------------------------------------------------------------------------------------------------------- */
+
+static lc_status glow_view(lc_rgb *value, int *kind, const lc_scene *scene, const lc_hit *hit, void *user, lc_error *err)
+{
+    lc_rgb c = lc_emission(scene, hit);
+    unsigned bits[sizeof c / sizeof(unsigned)], hash = 17;
+    (void)user;
+    (void)err;
+    memcpy(bits, &c, sizeof c);
+    for (size_t i = 0; i < sizeof bits / sizeof bits[0]; ++i)
+        hash = 31 * hash + bits[i];
+    *kind = (int)(hash & 0x7fffffff);
+    if (value)
+        *value = c;
+    return LC_OK;
+}
+
+static lc_status know_scene(lc_session *session, const lc_scene *scene, lc_error *err)
+{
+    const lc_scene_desc *d = lc_scene_description(scene);
+    size_t pixels = (size_t)d->width * (size_t)d->height;
+    if (session->foreign && session->foreign->scene == scene)
+        return LC_OK;
+    lc_foreign_free(session->foreign);
+    lc_foreign *f = session->foreign = calloc(1, sizeof *f);
+    if (f) {
+        f->scene = scene;
+        f->glow = (lc_expected){d->width, d->height, calloc(3 * pixels, sizeof(double)), calloc(pixels, 1)};
+    }
+    if (!f || !f->glow.rgb || !f->glow.skip)
+        return lc_fail(err, LC_FAULT, "out of memory for what %s emits", d->name);
+    return lc_expect_view(&f->glow, glow_view, NULL, scene, 1e-6, session->options->threads, err);
+}
+
+/* ---- films of images --------------------------------------------------------------------------------------------- */
+
+static int tiles_along(int pixels, int level) { return (pixels - 1) / (1 << level) + 1; }
+
+static lc_status make_film(foreign_film *f, const lc_scene *scene, lc_error *err)
+{
+    const lc_scene_desc *d = lc_scene_description(scene);
+    lc_status status = lc_film_create(&f->film, d->width, d->height, err);
+    if (status != LC_OK)
+        return status;
+    f->film->has_third = 1;
+    for (int l = 0; l < lc_pyramid_levels(d->width, d->height); ++l) {
+        f->tiles[l] = calloc(3 * (size_t)tiles_along(d->width, l) * (size_t)tiles_along(d->height, l), sizeof *f->tiles[l]);
+        if (!f->tiles[l])
+            return lc_fail(err, LC_FAULT, "out of memory for the tiles of %s", d->name);
+    }
+    return LC_OK;
+}
+
+/* Takes L_0 off, and what is left out. */
+static void reflect(float *image, const lc_expected *glow)
+{
+    for (size_t i = 0; i < (size_t)glow->width * (size_t)glow->height; ++i)
+        for (size_t c = 3 * i; c < 3 * i + 3; ++c)
+            image[c] = glow->skip[i] ? 0 : (float)(image[c] - glow->rgb[c]);
+}
+
+static lc_status add_tiles(foreign_film *f, const float *image, double index, lc_error *err)
+{
+    int width = f->film->width, height = f->film->height;
+    for (int l = 0; l < LC_LEVELS && f->tiles[l]; ++l) {
+        int across = tiles_along(width, l);
+        size_t count = 3 * (size_t)across * (size_t)tiles_along(height, l);
+        double *sums = calloc(count, sizeof *sums);
+        if (!sums)
+            return lc_fail(err, LC_FAULT, "out of memory for the tiles of an image");
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x)
+                for (size_t c = 0; c < 3; ++c)
+                    sums[3 * ((size_t)(y >> l) * (size_t)across + (size_t)(x >> l)) + c] +=
+                        image[3 * ((size_t)y * (size_t)width + (size_t)x) + c];
+        for (size_t i = 0; i < count; ++i) {
+            tile_spread *t = &f->tiles[l][i];
+            double delta = sums[i] - t->mean;
+            t->mean += delta / (index + 1);
+            t->m2 += delta * (sums[i] - t->mean);
+        }
+        free(sums);
+    }
+    return LC_OK;
+}
+
+/* One block of images. */
+static lc_status add_images(foreign_film *f, const float *images, int count, lc_error *err)
+{
+    size_t pixels = (size_t)f->film->width * (size_t)f->film->height;
+    lc_status status = LC_OK;
+    for (size_t i = 0; i < pixels; ++i) {
+        double block[LC_BLOCK][3];
+        for (int k = 0; k < count; ++k)
+            for (size_t c = 0; c < 3; ++c)
+                block[k][c] = images[3 * ((size_t)k * pixels + i) + c];
+        lc_pixel_add(&f->film->pixels[i], (const double(*)[3])block, count);
+    }
+    for (int k = 0; k < count && status == LC_OK; ++k)
+        status = add_tiles(f, images + 3 * (size_t)k * pixels, (double)f->film->count + k, err);
+    f->film->count += (uint64_t)count;
+    return status;
+}
+
+/* Seeds of one film follow each other from a number of its own. */
+static uint32_t first_seed(const lc_session *session, const foreign_film *f)
+{
+    char text[256];
+    snprintf(text, sizeof text, "%s %d %d %d %d %llu", lc_scene_description(session->foreign->scene)->name, f->min_bounces,
+             f->max_bounces, f->samples, f->is_pilot, (unsigned long long)session->options->seed);
+    return 1 + (lc_arm(text) & 0x3fffffff);
+}
+
+static lc_status grow(lc_session *session, foreign_film *f, uint64_t images, lc_error *err)
+{
+    const lc_foreign *known = session->foreign;
+    const lc_scene_desc *d = lc_scene_description(known->scene);
+    size_t floats = 3 * (size_t)d->width * (size_t)d->height;
+    float *rgb = malloc(LC_BLOCK * floats * sizeof *rgb);
+    lc_status status = rgb ? LC_OK : lc_fail(err, LC_FAULT, "out of memory for images of %s", d->name);
+    while (status == LC_OK && f->film->count < images) {
+        lc_adapter_job job = {d, f->max_bounces, f->samples, first_seed(session, f) + (uint32_t)f->film->count, LC_BLOCK};
+        status = lc_adapter_render(rgb, session->options->renderer, &job, err);
+        for (size_t k = 0; status == LC_OK && f->min_bounces > 0 && k < LC_BLOCK; ++k)
+            reflect(rgb + k * floats, &known->glow);
+        if (status == LC_OK)
+            status = add_images(f, rgb, LC_BLOCK, err);
+        session->paths += (uint64_t)LC_BLOCK * (uint64_t)f->samples * floats / 3;
+    }
+    free(rgb);
+    return status;
+}
+
+static lc_status film_of(foreign_film **out, lc_session *session, const lc_claim *claim, int samples, int is_pilot,
+                         uint64_t images, lc_error *err)
+{
+    lc_foreign *known = session->foreign;
+    for (int i = 0; i < known->film_count; ++i) {
+        foreign_film *f = &known->films[i];
+        if (f->min_bounces == claim->min_bounces && f->max_bounces == claim->max_bounces && f->is_pilot == is_pilot &&
+            (f->samples == samples && f->film->count <= images)) {
+            *out = f;
+            return grow(session, f, images, err);
+        }
+    }
+    if (known->film_count == MOST_FILMS)
+        return lc_fail(err, LC_FAULT, "more than %d films of one scene", MOST_FILMS);
+    foreign_film *f = *out = &known->films[known->film_count++];
+    *f = (foreign_film){claim->min_bounces, claim->max_bounces, samples, is_pilot, NULL, {NULL}};
+    lc_status status = make_film(f, known->scene, err);
+    if (status != LC_OK)
+        return status;
+    f->film->seed = session->options->seed;
+    f->film->arm = lc_session_arm(claim->estimator);
+    f->film->min_bounces = claim->min_bounces;
+    f->film->max_bounces = claim->max_bounces;
+    snprintf(f->film->scene, sizeof f->film->scene, "%s", lc_scene_description(known->scene)->name);
+    snprintf(f->film->estimator, sizeof f->film->estimator, "%s", claim->estimator->name);
+    return grow(session, f, images, err);
+}
+
+/* Variance of the tiles' sums over the sum of their pixels', of each level, in the channel where it is largest. */
+static void find_inflation(lc_pyramid_plan *plan, const foreign_film *f)
+{
+    size_t pixels = (size_t)f->film->width * (size_t)f->film->height;
+    for (size_t c = 0; c < 3; ++c) {
+        double alone = 0;
+        for (size_t i = 0; i < pixels; ++i)
+            alone += f->film->pixels[i].c[c].m2;
+        for (int l = 0; l < LC_LEVELS && f->tiles[l] && alone > 0; ++l) {
+            double together = 0;
+            size_t count = (size_t)tiles_along(f->film->width, l) * (size_t)tiles_along(f->film->height, l);
+            for (size_t i = 0; i < count; ++i)
+                together += f->tiles[l][3 * i + c].m2;
+            plan->inflation[l] = fmax(plan->inflation[l], together / alone);
+        }
+    }
+}
+
+/* ---- decisions --------------------------------------------------------------------------------------------------- */
+
+typedef struct outcome {
+    lc_verdict verdict;
+    lc_pyramid hardest;
+    int channel;
+    double scale;
+} outcome;
+
+/* What the images are compared with. */
+typedef struct reference {
+    const lc_expected *expected; /* or */
+    const lc_film *film;         /* of ours */
+    const unsigned char *skip;   /* pixels that are left out */
+} reference;
+
+static lc_status judge_look(outcome *out, const lc_film *film, const reference *r, lc_estimate *field,
+                            lc_pyramid_plan *plan, double margin, double tolerance, lc_error *err)
+{
+    double most = -1;
+    out->verdict = LC_PASS;
+    for (int c = 0; c < 3; ++c) {
+        lc_pyramid pyramid;
+        double scale = lc_claim_mean(r->film, r->expected, r->skip, c);
+        double unit = scale > 0 ? scale : lc_claim_mean(film, NULL, r->skip, c);
+        plan->margin[lc_pyramid_levels(film->width, film->height) - 1] = unit > 0 ? margin * unit : INFINITY;
+        plan->relative = r->film ? margin : 0;
+        lc_status status = r->film ? lc_field_two(field, film, r->film, c, tolerance * scale, err)
+                                   : lc_field_one(field, film, r->expected->rgb, c, tolerance * scale, err);
+        for (size_t i = 0; i < (size_t)film->width * (size_t)film->height; ++i)
+            if (r->skip[i])
+                field[i] = lc_estimate_zero();
+        if (status == LC_OK)
+            status = lc_pyramid_judge(&pyramid, field, film->width, film->height, plan, err);
+        if (status != LC_OK)
+            return status;
+        out->verdict = lc_verdict_both(out->verdict, pyramid.verdict);
+        if (lc_row_hardness(&pyramid, unit) > most) {
+            most = lc_row_hardness(&pyramid, unit);
+            *out = (outcome){out->verdict, pyramid, c, unit};
+        }
+    }
+    return LC_OK;
+}
+
+/* Where images do not differ by more than rounding, each pixel is held to the value. `slack` is absolute. */
+static int is_still(const lc_film *film, const unsigned char *skip, double slack)
+{
+    for (size_t i = 0; i < (size_t)film->width * (size_t)film->height; ++i)
+        for (int c = 0; c < 3 && !skip[i]; ++c)
+            if (film->pixels[i].c[c].m2 > (double)film->pixels[i].n * slack * slack)
+                return 0;
+    return 1;
+}
+
+static void compare_still(lc_row *row, const lc_film *film, const reference *r, double tolerance, double slack)
+{
+    row->exact = 1;
+    row->verdict = LC_ROW_PASS;
+    for (size_t i = 0; i < (size_t)film->width * (size_t)film->height; ++i)
+        for (size_t c = 0; c < 3 && !r->skip[i]; ++c) {
+            double is = film->pixels[i].c[c].mean;
+            double should = r->film ? r->film->pixels[i].c[c].mean : r->expected->rgb[3 * i + c];
+            if (lc_decide_exact(is - should, tolerance * fabs(should) + slack) == LC_PASS)
+                continue;
+            row->verdict = LC_ROW_FAIL;
+            snprintf(row->reason, sizeof row->reason, "%s on %s is wrong: pixel %d,%d has %c = %.9g, expected %.9g",
+                     row->estimator, row->scene, (int)(i % (size_t)film->width), (int)(i / (size_t)film->width), "RGB"[c],
+                     is, should);
+            return;
+        }
+}
+
+/* Largest emission that a pixel shows: what rounding is relative to. */
+static double brightest(const lc_foreign *f)
+{
+    double most = 0;
+    for (size_t i = 0; i < 3 * (size_t)f->glow.width * (size_t)f->glow.height; ++i)
+        most = fmax(most, f->glow.rgb[i]);
+    return most;
+}
+
+/* Pixels left out of either. */
+static unsigned char *both_skips(const lc_foreign *f, const lc_claim *claim, const lc_expected *expected)
+{
+    size_t pixels = (size_t)f->glow.width * (size_t)f->glow.height;
+    unsigned char *skip = calloc(pixels, 1);
+    for (size_t i = 0; skip && i < pixels; ++i)
+        skip[i] = (unsigned char)((claim->min_bounces > 0 && f->glow.skip[i]) || (expected && expected->skip[i]));
+    return skip;
+}
+
+/* Samples of ours that are compared with the images at a look. */
+static uint64_t our_samples(double c, double room, int pixels, int look)
+{
+    uint64_t planned = lc_planned_samples(c, room, pixels);
+    planned = planned < LC_LEAST_SAMPLES ? LC_LEAST_SAMPLES : planned > 1 << 24 ? 1 << 24 : planned;
+    return ((planned + LC_BLOCK - 1) / LC_BLOCK * LC_BLOCK) << (2 * look);
+}
+
+typedef struct plan {
+    double c, c_other, room;
+    int samples; /* a pixel of each image */
+} plan;
+
+/* Noise, margin and the samples of an image, from a pilot whose images are never used again. */
+static lc_status make_plan(plan *p, lc_row *row, lc_session *session, const lc_claim *claim, lc_error *err)
+{
+    const lc_scene_desc *d = lc_scene_description(claim->scene);
+    int pixels = d->width * d->height;
+    foreign_film *pilot;
+    lc_status status = film_of(&pilot, session, claim, PILOT_SAMPLES, 1, PILOT_IMAGES, err);
+    if (status == LC_OK && claim->other)
+        status = lc_claim_noise(&p->c_other, session, claim, claim->other, err);
+    if (status != LC_OK)
+        return status;
+    p->c = lc_film_noise(pilot->film) * sqrt(PILOT_SAMPLES);
+    row->margin = fmax(lc_claim_margin(session, claim, p->c), claim->margin);
+    p->room = claim->margin > 0 ? row->margin - claim->tolerance : row->margin;
+    double planned = (double)lc_planned_samples(hypot(p->c, p->c_other), p->room, pixels);
+    double most = session->options->suite->most_samples / pixels;
+    p->samples = (int)fmax(1, ceil(fmin(planned, most) / IMAGES));
+    return LC_OK;
+}
+
+static lc_status judge(lc_row *row, lc_session *session, const lc_claim *claim, const plan *p, reference *r,
+                       lc_estimate *field, lc_error *err)
+{
+    const lc_verify_options *o = session->options;
+    const lc_scene_desc *d = lc_scene_description(claim->scene);
+    double slack = o->renderer->rounding * brightest(session->foreign);
+    double tolerance = fmax(claim->tolerance, o->renderer->rounding);
+    lc_budget budget = {o->false_fail, o->false_pass, session->rows, 3, LC_MOST_LOOKS};
+    lc_pyramid_plan pyramid;
+    outcome result = {.verdict = LC_GO_ON};
+    for (int k = 0; k < LOOKS && result.verdict == LC_GO_ON; ++k) {
+        foreign_film *f;
+        uint64_t images = (uint64_t)IMAGES << (2 * k);
+        lc_status status = film_of(&f, session, claim, p->samples, 0, images, err);
+        if (status == LC_OK && claim->other)
+            status = lc_session_film(&r->film, session, claim->scene, claim->other, claim->min_bounces, claim->max_bounces,
+                                     lc_session_arm(claim->other),
+                                     our_samples(hypot(p->c, p->c_other), p->room, d->width * d->height, k), err);
+        if (status != LC_OK)
+            return status;
+        row->samples = images * (uint64_t)p->samples;
+        row->paths = row->samples * (uint64_t)d->width * (uint64_t)d->height;
+        if ((claim->may_be_still || claim->exact) && is_still(f->film, r->skip, slack) &&
+            (!r->film || is_still(r->film, r->skip, slack))) {
+            compare_still(row, f->film, r, tolerance, slack);
+            return LC_OK;
+        }
+        row->exact = 0;
+        lc_pyramid_plan_init(&pyramid, lc_budget_row_fail(&budget), lc_budget_row_pass(&budget));
+        find_inflation(&pyramid, f);
+        status = judge_look(&result, f->film, r, field, &pyramid, row->margin, tolerance, err);
+        if (status != LC_OK)
+            return status;
+    }
+    row->verdict = result.verdict == LC_PASS ? LC_ROW_PASS : result.verdict == LC_FAIL ? LC_ROW_FAIL : LC_ROW_UNDECIDED;
+    lc_row_numbers(row, &result.hardest, result.channel, result.scale, pyramid.alpha_pass, (double)row->paths);
+    lc_row_describe(row, &result.hardest);
+    return LC_OK;
+}
+
+lc_status lc_judge_foreign(lc_row *row, lc_session *session, const lc_claim *claim, lc_error *err)
+{
+    const lc_scene_desc *d = lc_scene_description(claim->scene);
+    plan p = {0, 0, 0, 0};
+    reference r = {NULL, NULL, NULL};
+    lc_status status = know_scene(session, claim->scene, err);
+    if (status == LC_OK && !claim->other)
+        status = lc_session_values(&r.expected, session, claim, err);
+    if (status == LC_WRONG) { /* a missing reference is a failure */
+        row->verdict = LC_ROW_FAIL;
+        row->exact = 1;
+        snprintf(row->reason, sizeof row->reason, "%.500s", err->text);
+        return LC_OK;
+    }
+    if (status == LC_OK)
+        status = make_plan(&p, row, session, claim, err);
+    if (status != LC_OK)
+        return status;
+    unsigned char *skip = both_skips(session->foreign, claim, r.expected);
+    lc_estimate *field = malloc(sizeof *field * (size_t)d->width * (size_t)d->height);
+    r.skip = skip;
+    status = skip && field ? judge(row, session, claim, &p, &r, field, err)
+                           : lc_fail(err, LC_FAULT, "out of memory for the differences of %s", d->name);
+    free(skip);
+    free(field);
+    return status;
+}

@@ -1,0 +1,182 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ *
+ * Relations between scenes, from the same random numbers: each sample less what the same numbers give over the terms. If
+ * the relation holds, the differences have the mean 0, and hardly any variance where the paths are the same ones. This
+ * is right whatever the numbers do with each other: each difference is one independent sample.
+ */
+#include <stdlib.h>
+
+#include "verify/judge/judge_c.h"
+
+/* What the terms add up to, of one channel [radiance]. */
+typedef struct terms_mean {
+    double mean, least; /* `least`: below it but for a chance of 1e-15 */
+} terms_mean;
+
+/* From the film over the scene itself and the differences, X - (X - T). */
+static terms_mean mean_of_terms(const lc_film *film, const lc_film *difference, int channel)
+{
+    size_t count = (size_t)film->width * (size_t)film->height;
+    double sum = 0, variance[2] = {0, 0};
+    for (size_t i = 0; i < count; ++i) {
+        sum += film->pixels[i].c[channel].mean - difference->pixels[i].c[channel].mean;
+        variance[0] += lc_pixel_variance(&film->pixels[i], channel);
+        variance[1] += lc_pixel_variance(&difference->pixels[i], channel);
+    }
+    /* Both films see the same samples: the errors add up. Missed bright samples lower the mean, which is the safe side. */
+    double error = (sqrt(variance[0]) + sqrt(variance[1])) / (double)count, mean = sum / (double)count;
+    return (terms_mean){mean, fmax(0, mean - 8 * error)};
+}
+
+/* c of the differences: their standard deviation over the mean of the terms, in the channel where it is largest. */
+static double noise_of(const lc_film *film, const lc_film *difference)
+{
+    size_t count = (size_t)film->width * (size_t)film->height;
+    double most = 0;
+    for (int c = 0; c < 3; ++c) {
+        double variance = 0, mean = mean_of_terms(film, difference, c).mean;
+        for (size_t i = 0; i < count; ++i) {
+            const lc_pixel *p = &difference->pixels[i];
+            variance += p->n > 1 ? p->c[c].m2 / ((double)p->n - 1) / (double)count : 0.0;
+        }
+        if (mean > 0)
+            most = fmax(most, sqrt(variance) / mean);
+    }
+    return most;
+}
+
+/* 1 when the root mean square of the differences is below the tolerance in each pixel, and there is light at all. */
+static int all_agree(const lc_film *film, const lc_film *difference, double tolerance)
+{
+    size_t count = (size_t)film->width * (size_t)film->height;
+    double light = 0;
+    for (int c = 0; c < 3; ++c) {
+        double mean = mean_of_terms(film, difference, c).mean, most = tolerance * mean;
+        light = fmax(light, mean);
+        for (size_t i = 0; i < count; ++i) {
+            const lc_moments *m = &difference->pixels[i].c[c];
+            double n = (double)difference->pixels[i].n;
+            if (!(m->m2 + n * m->mean * m->mean <= n * most * most))
+                return 0;
+        }
+    }
+    return light > 0;
+}
+
+typedef struct outcome {
+    lc_verdict verdict;
+    lc_pyramid hardest;
+    int channel;
+    double scale;
+} outcome;
+
+static lc_status judge_look(outcome *out, const lc_film *film, const lc_film *difference, const double *zero,
+                            lc_estimate *field, lc_pyramid_plan *plan, double margin, double tolerance, lc_error *err)
+{
+    double most = -1;
+    out->verdict = LC_PASS;
+    for (int c = 0; c < 3; ++c) {
+        lc_pyramid pyramid;
+        terms_mean terms = mean_of_terms(film, difference, c);
+        plan->margin[lc_pyramid_levels(film->width, film->height) - 1] =
+            terms.least > 0 ? margin * terms.least : INFINITY;
+        double tolerated = tolerance * fmax(terms.mean, 0);
+        lc_status status = lc_field_one(field, difference, zero, c, tolerated, err);
+        for (size_t i = 0; status == LC_OK && i < (size_t)film->width * (size_t)film->height; ++i)
+            field[i].expected = film->pixels[i].c[c].mean - difference->pixels[i].c[c].mean;
+        if (status == LC_OK)
+            status = lc_pyramid_judge(&pyramid, field, film->width, film->height, plan, err);
+        if (status != LC_OK)
+            return status;
+        double unit = terms.mean > 0 ? terms.mean : 1;
+        out->verdict = lc_verdict_both(out->verdict, pyramid.verdict);
+        if (lc_row_hardness(&pyramid, unit) > most) {
+            most = lc_row_hardness(&pyramid, unit);
+            out->hardest = pyramid;
+            out->channel = c;
+            out->scale = unit;
+        }
+    }
+    return LC_OK;
+}
+
+/* Both films at the same samples. */
+static lc_status films_of(const lc_film **film, const lc_film **difference, lc_session *session, const lc_claim *claim,
+                          uint32_t arm, uint64_t samples, lc_error *err)
+{
+    lc_status status = lc_session_film(film, session, claim->scene, claim->estimator, claim->min_bounces,
+                                       claim->max_bounces, arm, samples, err);
+    return status == LC_OK ? lc_session_difference(difference, session, claim, arm, samples, err) : status;
+}
+
+/* 1 when no statistics are needed: bad samples, or all agree. */
+static int is_settled(lc_row *row, const lc_film *film, const lc_film *difference, const lc_session *session,
+                      const lc_claim *claim)
+{
+    if (film->bad || difference->bad) {
+        lc_row_bad(row, film->bad ? film : difference, session->options->seed);
+        return 1;
+    }
+    if (!all_agree(film, difference, claim->tolerance))
+        return 0;
+    row->exact = 1;
+    row->verdict = LC_ROW_PASS;
+    return 1;
+}
+
+static lc_status judge(lc_row *row, lc_session *session, const lc_claim *claim, lc_estimate *field, const double *zero,
+                       lc_error *err)
+{
+    const lc_scene_desc *desc = lc_scene_description(claim->scene);
+    int pixels = desc->width * desc->height;
+    uint32_t arm = lc_session_arm(claim->estimator);
+    const lc_film *film, *difference;
+    /* Where all samples agree, few of them tell; else a pilot, whose samples are never used again, tells how many. */
+    row->samples = LC_BLOCK;
+    row->paths = row->samples * (uint64_t)pixels;
+    lc_status status = films_of(&film, &difference, session, claim, arm, LC_BLOCK, err);
+    if (status == LC_OK && is_settled(row, film, difference, session, claim))
+        return LC_OK;
+    if (status == LC_OK)
+        status = films_of(&film, &difference, session, claim, ~arm, LC_BLOCK, err);
+    if (status != LC_OK)
+        return status;
+    double c = noise_of(film, difference);
+    row->margin = lc_claim_margin(session, claim, c);
+    uint64_t most = (uint64_t)fmin(session->options->suite->most_samples / pixels, UINT32_MAX);
+    uint64_t looks[LC_MOST_LOOKS];
+    int look_count = lc_row_looks(looks, lc_planned_samples(c, row->margin, pixels), most);
+    lc_budget budget = {session->options->false_fail, session->options->false_pass, session->rows, 3, LC_MOST_LOOKS};
+    lc_pyramid_plan plan;
+    lc_pyramid_plan_init(&plan, lc_budget_row_fail(&budget), lc_budget_row_pass(&budget));
+    if (claim->whole_only)
+        lc_plan_whole(&plan, desc->width, desc->height);
+    outcome result = {.verdict = LC_GO_ON};
+    for (int k = 0; k < look_count && result.verdict == LC_GO_ON; ++k) {
+        row->samples = looks[k];
+        row->paths = row->samples * (uint64_t)pixels;
+        status = films_of(&film, &difference, session, claim, arm, row->samples, err);
+        if (status != LC_OK)
+            return status;
+        if (is_settled(row, film, difference, session, claim))
+            return LC_OK;
+        status = judge_look(&result, film, difference, zero, field, &plan, row->margin, claim->tolerance, err);
+        if (status != LC_OK)
+            return status;
+    }
+    row->verdict = result.verdict == LC_PASS ? LC_ROW_PASS : result.verdict == LC_FAIL ? LC_ROW_FAIL : LC_ROW_UNDECIDED;
+    lc_row_numbers(row, &result.hardest, result.channel, result.scale, plan.alpha_pass, (double)row->paths);
+    lc_row_describe(row, &result.hardest);
+    return LC_OK;
+}
+
+lc_status lc_judge_paired(lc_row *row, lc_session *session, const lc_claim *claim, lc_estimate *field, lc_error *err)
+{
+    const lc_scene_desc *desc = lc_scene_description(claim->scene);
+    double *zero = calloc(3 * (size_t)desc->width * (size_t)desc->height, sizeof *zero);
+    if (!zero)
+        return lc_fail(err, LC_FAULT, "out of memory for the differences of %s", desc->name);
+    lc_status status = judge(row, session, claim, field, zero, err);
+    free(zero);
+    return status;
+}
