@@ -78,8 +78,8 @@ $(BUILD)/lightcheck: $(CLI) $(LIB) | $(BUILD)/lightcheck.syms
 $(BUILD)/lightcheck-worker: $(WORKER) | $(BUILD)/lightcheck.syms
 	$(CC) $(LDFLAGS) $(EXPORT) -o $@ $^ -l$(FOUND) -lseccomp -lm -pthread
 
-$(BUILD)/tests: $(TEST) $(LIB) | $(BUILD)/lightcheck-worker
-	$(CC) $(LDFLAGS) -o $@ $^ $(CHECK_LIBS) $(ALL_LIBS)
+$(BUILD)/tests: $(TEST) $(LIB) | $(BUILD)/lightcheck-worker $(BUILD)/lightcheck.syms
+	$(CC) $(LDFLAGS) $(EXPORT) -o $@ $^ $(CHECK_LIBS) $(ALL_LIBS)
 
 # The texts that the program carries in itself.
 $(BUILD)/texts.c: src/core/lightcheck.h estimators/template.c

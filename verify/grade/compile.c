@@ -21,6 +21,7 @@
 #include <unistd.h>
 
 #include "verify/grade/texts.h"
+#include "verify/grade/wire.h"
 
 enum { PATH_SIZE = 4096, MOST_SOURCE = 1 << 20, MOST_OUTPUT = 1 << 18, MOST_OBJECT = 16 << 20, MOST_SECONDS = 60 };
 
@@ -116,28 +117,13 @@ static void on_death(int number)
     caller_died = 1;
 }
 
-static int write_all(int to, const void *data, size_t size)
-{
-    const char *at = data;
-    while (size > 0) {
-        ssize_t n = write(to, at, size);
-        if (n < 0 && errno == EINTR)
-            continue;
-        if (n <= 0)
-            return 0;
-        at += n;
-        size -= (size_t)n;
-    }
-    return 1;
-}
-
 /* Writes a file into the folder, for the prisoner where there is one. */
 static int write_file(const job *j, const char *name, const void *data, size_t size)
 {
     char path[PATH_SIZE + 256];
     snprintf(path, sizeof path, "%s/%.255s", j->folder, name);
     int file = open(path, O_WRONLY | O_CREAT | O_EXCL, 0644);
-    int ok = file >= 0 && write_all(file, data, size);
+    int ok = file >= 0 && lc_wire_send(file, data, size);
     if (file >= 0)
         close(file);
     return ok;
@@ -238,7 +224,7 @@ static int copy_object(const job *j)
     for (;;) {
         ssize_t n = read(from, buffer, sizeof buffer);
         size += n > 0 ? (size_t)n : 0;
-        if (n <= 0 || size > MOST_OBJECT || !write_all(j->image, buffer, (size_t)n)) {
+        if (n <= 0 || size > MOST_OBJECT || !lc_wire_send(j->image, buffer, (size_t)n)) {
             close(from);
             return n == 0;
         }

@@ -60,13 +60,17 @@ uint64_t lc_wire_build(void)
     return hash;
 }
 
-static int write_all(int to, const void *data, size_t size)
+int lc_wire_send(int to, const void *data, size_t size)
 {
     const char *at = data;
-    for (ssize_t n; size > 0; at += n, size -= (size_t)n) {
-        n = write(to, at, size);
+    while (size > 0) {
+        ssize_t n = write(to, at, size);
+        if (n < 0 && errno == EINTR)
+            continue;
         if (n <= 0)
             return 0;
+        at += n;
+        size -= (size_t)n;
     }
     return 1;
 }
@@ -77,14 +81,14 @@ static int write_scene(int fd, const lc_scene_desc *scene)
         const char *array = get_pointer(scene, i);
         size_t size = size_of(scene, i);
         if (arrays[i].size != sizeof(lc_material_desc) || i != 0) {
-            if (!write_all(fd, array, size))
+            if (!lc_wire_send(fd, array, size))
                 return 0;
             continue;
         }
         for (size_t k = 0; k < size / sizeof(lc_material_desc); ++k) {
             lc_material_desc material = scene->materials[k];
             memset(material.id, 0, sizeof material.id);
-            if (!write_all(fd, &material, sizeof material))
+            if (!lc_wire_send(fd, &material, sizeof material))
                 return 0;
         }
     }
@@ -113,7 +117,7 @@ static int write_request(int fd, lc_wire_request *copy, const lc_scene *scene)
         }
     }
     copy->options.minus = NULL;
-    if (!write_all(fd, copy, sizeof *copy))
+    if (!lc_wire_send(fd, copy, sizeof *copy))
         return 0;
     for (int i = 0; i < count; ++i)
         if (!write_scene(fd, scenes[i]))

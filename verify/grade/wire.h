@@ -44,6 +44,9 @@ typedef struct lc_wire_description {
 /* Differs where two programs would not understand each other. */
 uint64_t lc_wire_build(void);
 
+/* Writes all of it; returns 0 when that cannot be. */
+int lc_wire_send(int to, const void *data, size_t size);
+
 /* Writes the request as a sealed file in memory, to *fd; `scene` is NULL where nothing is rendered, the terms' are the options'. Names
  * stay at home: an estimator has no need to know what it renders. */
 lc_status lc_wire_write(int *fd, const lc_wire_request *request, const lc_scene *scene, lc_error *err);

@@ -17,6 +17,7 @@
 #include "estimators/registry.h"
 #include "io/scene_read.h"
 #include "verify/grade/jail.h"
+#include "verify/grade/plugin.h"
 #include "verify/grade/symbols.h"
 #include "verify/judge/judge.h"
 #include "verify/tests/docker_like.h"
@@ -161,6 +162,39 @@ static void write_source(const char *path, const char *text)
     "static lc_rgb radiance(const lc_scene *s, const lc_ray *r, const lc_hit *h, const lc_options *o, lc_sampler *m)\n" \
     "{\n" body "    return lc_emission(s, h);\n}\n" \
     "LC_ESTIMATOR(kept) = {LC_ABI, \"kept\", \"x\", \"y\", LC_DIFFUSE, LC_AREA, 1, radiance};\n"
+
+/* Differences, with bad samples among them: the same film as of the same file in the open, and the same first bad sample. */
+START_TEST(test_jail_differences)
+{
+    char path[128];
+    lc_error err = {""};
+    const lc_estimator *open;
+    lc_scene *scene = load("cornell"), *other = load("cornell_small");
+    const lc_term terms[2] = {{other, 0.5, 0}, {scene, 0.25, 1}};
+    lc_render_options o = {
+        .min_bounces = 1, .max_bounces = 1, .seed = 9, .count = 80, .threads = 3, .minus = terms, .minus_count = 2};
+    lc_film *ours = make_film(17, 12), *theirs = make_film(17, 12);
+    snprintf(path, sizeof path, "%s/kept.c", folder);
+    write_source(path, PLUGIN("double u = lc_next(m); if (u < 0.001) return lc_color(0, NAN, 0);\n"
+                              "if (u < 0.5) return lc_color(u, 2 * u, 1);\n"));
+    ck_assert_msg(lc_plugin_load(&open, path, NULL, 0, &err) == LC_OK, "%s", err.text);
+    lc_jail *jail = open_honest(path);
+    ck_assert_int_eq(lc_render(ours, scene, open, &o, &err), LC_OK);
+    ck_assert_msg(lc_render(theirs, scene, lc_jail_estimator(jail), &o, &err) == LC_OK, "%s", err.text);
+    ck_assert_mem_eq(ours->pixels, theirs->pixels, sizeof *ours->pixels * 17 * 12);
+    ck_assert_uint_gt(ours->bad, 0);
+    ck_assert_uint_eq(ours->bad, theirs->bad);
+    ck_assert_uint_eq(ours->bad_sample, theirs->bad_sample);
+    ck_assert_int_eq(ours->bad_x, theirs->bad_x);
+    ck_assert_int_eq(ours->bad_y, theirs->bad_y);
+    lc_jail_close(jail);
+    lc_film_free(ours);
+    lc_film_free(theirs);
+    lc_scene_free(scene);
+    lc_scene_free(other);
+    check_clean("differences");
+}
+END_TEST
 
 /* C++, words for a person, a NaN with its place, a failed assertion: what happens to honest people. */
 START_TEST(test_jail_honest_faults)
@@ -502,6 +536,7 @@ Suite *lc_suite_jail(void)
     tcase_add_test(tcase, test_jail_symbols);
 #ifndef __SANITIZE_ADDRESS__ /* which needs more of the system than a worker has */
     tcase_add_test(tcase, test_jail_same_bits);
+    tcase_add_test(tcase, test_jail_differences);
     tcase_add_test(tcase, test_jail_honest_faults);
     tcase_add_test(tcase, test_jail_links);
     tcase_add_test(tcase, test_jail_walls);

@@ -22,24 +22,9 @@ static struct {
     double buffer[3 * 1024];
 } out;
 
-static int send_all(const void *data, size_t size)
-{
-    const char *at = data;
-    while (size > 0) {
-        ssize_t n = write(LC_WIRE_SAMPLES, at, size);
-        if (n < 0 && errno == EINTR)
-            continue;
-        if (n <= 0)
-            return 0;
-        at += n;
-        size -= (size_t)n;
-    }
-    return 1;
-}
-
 static void flush(void)
 {
-    if (!send_all(out.buffer, out.used * sizeof out.buffer[0]))
+    if (!lc_wire_send(LC_WIRE_SAMPLES, out.buffer, out.used * sizeof out.buffer[0]))
         _exit(3); /* nobody listens any more */
     out.used = 0;
 }
@@ -64,7 +49,7 @@ static int greet(unsigned reached, lc_status status, const char *error)
     greeting.reached = reached;
     greeting.status = (int)status;
     snprintf(greeting.error, sizeof greeting.error, "%s", error);
-    return send_all(&greeting, sizeof greeting) && status == LC_OK;
+    return lc_wire_send(LC_WIRE_SAMPLES, &greeting, sizeof greeting) && status == LC_OK;
 }
 
 static const lc_estimator *load(const char **error)
@@ -89,7 +74,7 @@ static int describe(const lc_estimator *e, const char *error)
     memset(&d, 0, sizeof d);
     if (!e) {
         copy_text(d.source, sizeof d.source, error);
-        return send_all(&d, sizeof d);
+        return lc_wire_send(LC_WIRE_SAMPLES, &d, sizeof d);
     }
     d.loaded = 1;
     d.abi = e->abi;
@@ -102,7 +87,7 @@ static int describe(const lc_estimator *e, const char *error)
         d.emitters = e->emitters;
         d.max_bounces = e->max_bounces;
     }
-    return send_all(&d, sizeof d);
+    return lc_wire_send(LC_WIRE_SAMPLES, &d, sizeof d);
 }
 
 static lc_status build(lc_scene **scene, lc_wire_request *request, lc_error *err)
