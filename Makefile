@@ -53,8 +53,8 @@ ALL_CFLAGS := $(WARN) $(CFLAGS) -ffp-contract=off -D_POSIX_C_SOURCE=200809L -I. 
 ALL_LIBS   := $(NEEDS_LIBS) -lm -pthread
 
 DIRS := src/core src/io estimators verify/stats verify/analytic verify/renderers verify/judge verify/checks \
-        verify/mutants verify/diagnose verify/report
-LIB  := $(patsubst %.c,$(BUILD)/obj/%.o,$(filter-out estimators/template.c,$(wildcard $(DIRS:%=%/*.c))))
+        verify/mutants verify/diagnose verify/report verify/grade
+LIB  := $(BUILD)/obj/texts.o $(patsubst %.c,$(BUILD)/obj/%.o,$(filter-out estimators/template.c,$(wildcard $(DIRS:%=%/*.c))))
 CLI  := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard src/cli/*.c))
 TEST := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard verify/tests/*.c))
 # The proofs of the judge: programs of their own, two of whose files have a main.
@@ -64,11 +64,28 @@ PROOF := $(patsubst %.c,$(BUILD)/obj/%.o,$(filter-out %/calibrate.c %/power.c,$(
         calibrate power judge-mutants mutants bench needs fresh clean help
 all: $(BUILD)/lightcheck $(BUILD)/obj/estimators/template.o ## build the program
 
-$(BUILD)/lightcheck: $(CLI) $(LIB)
-	$(CC) $(LDFLAGS) -o $@ $^ $(ALL_LIBS)
+# A plug-in finds the functions of lightcheck.h in the program, and no others.
+EXPORT = -Wl,--dynamic-list=$(BUILD)/lightcheck.syms
+$(BUILD)/lightcheck.syms: src/core/lightcheck.h
+	@mkdir -p $(@D)
+	{ echo '{'; sed -n 's/^[a-z_0-9]* \(lc_[a-z_0-9]*\)(.*/    \1;/p' $<; echo '};'; } > $@
+
+$(BUILD)/lightcheck: $(CLI) $(LIB) | $(BUILD)/lightcheck.syms
+	$(CC) $(LDFLAGS) $(EXPORT) -o $@ $^ $(ALL_LIBS)
 
 $(BUILD)/tests: $(TEST) $(LIB)
 	$(CC) $(LDFLAGS) -o $@ $^ $(CHECK_LIBS) $(ALL_LIBS)
+
+# The texts that the program carries in itself.
+$(BUILD)/texts.c: src/core/lightcheck.h estimators/template.c
+	@mkdir -p $(@D)
+	{ echo '#include "verify/grade/texts.h"'; \
+	    for f in $^; do n=$${f##*/}; echo "const unsigned char lc_text_$${n%.*}_$${n##*.}[] = {"; \
+	        od -An -v -tx1 $$f | sed 's/ \(..\)/0x\1,/g'; echo '0};'; done; } > $@
+
+$(BUILD)/obj/texts.o: $(BUILD)/texts.c $(BUILD)/flags
+	@mkdir -p $(@D)
+	$(CC) $(ALL_CFLAGS) -c -o $@ $<
 
 $(BUILD)/calibrate $(BUILD)/power: $(BUILD)/%: $(BUILD)/obj/verify/proof/%.o $(PROOF) $(LIB)
 	$(CC) $(LDFLAGS) -o $@ $^ $(ALL_LIBS)

@@ -8,12 +8,13 @@
 #include "cli/args.h"
 
 extern const lc_command lc_command_list, lc_command_render, lc_command_sample, lc_command_compare, lc_command_merge,
-    lc_command_verify, lc_command_diagnose, lc_command_export, lc_command_reference;
+    lc_command_verify, lc_command_diagnose, lc_command_export, lc_command_reference, lc_command_new;
 
 /* Seed where none is given: fixed, so that two people see the same bits. */
 enum { LC_DEFAULT_SEED = 1, LC_DEFAULT_BOUNCES = 5 };
 
-/* The estimator or mutant of that name, or LC_BAD_INPUT with the valid names. */
+/* The estimator or mutant of that name, or LC_BAD_INPUT with the valid names. FILE.c (.cc .cpp .cxx) is compiled, FILE.so loaded: what
+ * the compiler says goes to stderr. It lives as long as the program. */
 lc_status lc_cli_find_estimator(const lc_estimator **out, const char *name, lc_error *err);
 /* Reads and builds a scene given by name (in scenes/) or by path. */
 lc_status lc_cli_load_scene(lc_scene **out, const char *name_or_path, const lc_strings *definitions, lc_error *err);

@@ -8,6 +8,7 @@
 #include "estimators/registry.h"
 #include "io/scene_path.h"
 #include "io/scene_read.h"
+#include "verify/grade/plugin.h"
 #include "verify/mutants/registry.h"
 
 static size_t list_names(char *text, size_t size, const lc_estimator *const *estimators)
@@ -18,8 +19,19 @@ static size_t list_names(char *text, size_t size, const lc_estimator *const *est
     return used;
 }
 
+/* What the compiler says is for whoever wrote the file: warnings, too. */
+static lc_status load_file(const lc_estimator **out, const char *path, lc_error *err)
+{
+    char messages[8192];
+    lc_status status = lc_plugin_load(out, path, messages, sizeof messages, err);
+    fputs(messages, stderr);
+    return status;
+}
+
 lc_status lc_cli_find_estimator(const lc_estimator **out, const char *name, lc_error *err)
 {
+    if (lc_is_plugin(name))
+        return load_file(out, name, err);
     for (const lc_estimator *const *e = lc_estimators; *e; ++e)
         if (strcmp((*e)->name, name) == 0) {
             *out = *e;
@@ -38,7 +50,7 @@ lc_status lc_cli_find_estimator(const lc_estimator **out, const char *name, lc_e
     char list[512] = "";
     list_names(list, sizeof list, lc_estimators);
     return lc_fail(err, LC_BAD_INPUT,
-                   "unknown estimator '%s'; expected one of: %s (or a mutant: `lightcheck list mutants`)", name, list);
+                   "unknown estimator '%s'; expected one of: %s (or a mutant: `lightcheck list mutants`, or FILE.c)", name, list);
 }
 
 /* "NAME=VALUE" -> an override; `names` owns the name. */

@@ -79,7 +79,7 @@ static lc_status render(void *user, const lc_strings *rest, lc_error *err)
     int width, height;
     lc_render_options options = {.seed = a->seed, .threads = a->threads, .shards = 1, .progress = lc_cli_progress};
     if (!a->estimator)
-        return lc_fail(err, LC_BAD_INPUT, "-e NAME says which estimator; `lightcheck list estimators` names them");
+        return lc_fail(err, LC_BAD_INPUT, "-e NAME|FILE.c says which estimator; `lightcheck list estimators` names them");
     lc_status status = lc_cli_find_estimator(&estimator, a->estimator, err);
     if (status == LC_OK)
         status = lc_cli_load_scene(&scene, scene_name, &a->definitions, err);
@@ -119,8 +119,8 @@ static int run(const lc_command *self, int argc, char **argv)
 {
     render_arguments a = {.bounces = -1, .seed = LC_DEFAULT_SEED};
     const lc_option options[] = {
-        {'e', "estimator", LC_OPT_STRING, &a.estimator, "NAME", "estimator (see `lightcheck list estimators`)", 0, 0,
-         NULL},
+        {'e', "estimator", LC_OPT_STRING, &a.estimator, "NAME|FILE.c",
+         "estimator (see `lightcheck list estimators`), or a file of your own", 0, 0, NULL},
         {'s', "samples", LC_OPT_INT, &a.samples, "SPP", "samples a pixel; default: the scene's", 1, 2e9, NULL},
         {0, "bounces", LC_OPT_INT, &a.bounces, "N", "scattering events at most; default: the scene's, else 5", 0,
          LC_UNBOUNDED, NULL},
@@ -145,5 +145,5 @@ static int run(const lc_command *self, int argc, char **argv)
 }
 
 const lc_command lc_command_render = {
-    "render", "SCENE -e NAME [options]", "renders a scene with an estimator", NULL, run,
+    "render", "SCENE -e NAME|FILE.c [options]", "renders a scene with an estimator", NULL, run,
 };

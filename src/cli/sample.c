@@ -51,7 +51,7 @@ static lc_status replay(void *user, const lc_strings *rest, lc_error *err)
     int width, height, x, y;
     lc_render_options options = {.seed = a->seed};
     if (!a->estimator || !a->pixel)
-        return lc_fail(err, LC_BAD_INPUT, "-e NAME and --pixel X,Y say which sample");
+        return lc_fail(err, LC_BAD_INPUT, "-e NAME|FILE.c and --pixel X,Y say which sample");
     lc_status status = lc_cli_find_estimator(&estimator, a->estimator, err);
     if (status == LC_OK)
         status = lc_cli_read_pair(&x, &y, a->pixel, ',', "--pixel", err);
@@ -86,8 +86,8 @@ static int run(const lc_command *self, int argc, char **argv)
 {
     sample_arguments a = {.bounces = -1, .seed = LC_DEFAULT_SEED, .argc = argc, .argv = argv};
     const lc_option options[] = {
-        {'e', "estimator", LC_OPT_STRING, &a.estimator, "NAME", "estimator (see `lightcheck list estimators`)", 0, 0,
-         NULL},
+        {'e', "estimator", LC_OPT_STRING, &a.estimator, "NAME|FILE.c",
+         "estimator (see `lightcheck list estimators`), or a file of your own", 0, 0, NULL},
         {0, "pixel", LC_OPT_STRING, &a.pixel, "X,Y", "counted from 0,0, the upper left", 0, 0, NULL},
         {0, "index", LC_OPT_UINT64, &a.index, "K", "which sample of the pixel; default 0", 0, 0, NULL},
         {0, "seed", LC_OPT_UINT64, &a.seed, "N", "default 1", 0, 0, NULL},
@@ -104,7 +104,7 @@ static int run(const lc_command *self, int argc, char **argv)
 
 const lc_command lc_command_sample = {
     "sample",
-    "SCENE -e NAME --pixel X,Y --index K [options]",
+    "SCENE -e NAME|FILE.c --pixel X,Y --index K [options]",
     "replays one sample and prints each draw, hit and value",
     NULL,
     run,

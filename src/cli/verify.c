@@ -161,7 +161,8 @@ static int run(const lc_command *self, int argc, char **argv)
     const lc_option options[] = {
         {0, "suite", LC_OPT_CHOICE, &a.suite, "quick|full", "margins 0.5% or 0.25% times max(1, c); default quick", 0,
          0, "quick|full"},
-        {'e', "estimator", LC_OPT_STRING, &a.estimator, "NAME", "only this estimator, or a mutant", 0, 0, NULL},
+        {'e', "estimator", LC_OPT_STRING, &a.estimator, "NAME|FILE.c",
+         "only this estimator, a mutant, or a file of your own", 0, 0, NULL},
         {0, "renderer", LC_OPT_STRING, &a.renderer, "ADAPTER",
          "only this program: ADAPTER scene.xml W H SPP SEED BOUNCES OUT.exr", 0, 0, NULL},
         {0, "seconds", LC_OPT_NUMBER, &a.seconds, "S", "that one call of ADAPTER may take; default 600", 0.1, 1e6, NULL},
@@ -184,7 +185,7 @@ static int run(const lc_command *self, int argc, char **argv)
 
 const lc_command lc_command_verify = {
     "verify",
-    "[--suite quick|full] [-e NAME] [-c CHECK] [--scene SCENE] [options]",
+    "[--suite quick|full] [-e NAME|FILE.c] [-c CHECK] [--scene SCENE] [options]",
     "puts estimators to the test",
     "PASS: shown equal to what is expected, within the margin. FAIL: shown different. UNDECIDED: the samples ran out, "
     "which is no\n"
