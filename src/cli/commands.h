@@ -8,8 +8,7 @@
 #include "cli/args.h"
 
 extern const lc_command lc_command_list, lc_command_render, lc_command_sample, lc_command_compare, lc_command_merge,
-    lc_command_verify, lc_command_diagnose, lc_command_export, lc_command_reference,
-    lc_command_new;
+    lc_command_verify, lc_command_diagnose, lc_command_export, lc_command_reference, lc_command_new;
 
 /* Seed where none is given: fixed, so that two people see the same bits. */
 enum { LC_DEFAULT_SEED = 1, LC_DEFAULT_BOUNCES = 5 };

@@ -48,7 +48,7 @@ static int run(const lc_command *self, int argc, char **argv)
 
 const lc_command lc_command_diagnose = {
     "diagnose",
-    "NAME [--hint none|category|name] [--seed N]",
+    "NAME|FILE.c [--hint none|category|name] [--seed N]",
     "says which known bug an estimator has, or what was measured of it",
     "A bug is named only when the estimator is shown equal to it and different from the truth and from all other known\n"
     "bugs. Exit status: 1 shown wrong, 0 not shown wrong, which is no proof that it is right: `lightcheck verify` is.\n",

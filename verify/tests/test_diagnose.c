@@ -162,6 +162,7 @@ Suite *lc_suite_diagnose(void)
 {
     Suite *suite = suite_create("diagnose");
     TCase *c = tcase_create("diagnose");
+    tcase_set_tags(c, "long"); /* many samples, no code that other tests do not run */
     tcase_set_timeout(c, 120);
     tcase_add_loop_test(c, test_mutant_is_named, 0, (int)(sizeof named / sizeof named[0]));
     tcase_add_loop_test(c, test_right_one_is_not_named, 0, 2);

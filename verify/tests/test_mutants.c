@@ -287,6 +287,7 @@ Suite *lc_suite_mutants(void)
 {
     Suite *suite = suite_create("mutants");
     TCase *c = tcase_create("mutants");
+    tcase_set_tags(c, "long"); /* many samples, no code that other tests do not run */
     tcase_set_timeout(c, 120);
     tcase_add_test(c, test_each_mutant_has_a_row);
     tcase_add_loop_test(c, test_mutant_is_wrong, 0, ROWS);

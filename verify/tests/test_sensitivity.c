@@ -135,6 +135,7 @@ Suite *lc_suite_sensitivity(void)
 {
     Suite *suite = suite_create("sensitivity");
     TCase *tc = tcase_create("core");
+    tcase_set_tags(tc, "long"); /* many samples, no code that other tests do not run */
     tcase_set_timeout(tc, 300);
     tcase_add_test(tc, one_percent_is_found_within_two_seconds);
     tcase_add_test(tc, a_fifth_of_a_percent_is_found_by_the_full_suite);
