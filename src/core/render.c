@@ -315,7 +315,7 @@ void lc_film_put(lc_film *film, const lc_render_options *options, uint32_t pixel
 
 /* Where `lightcheck sample --gdb` stops first, to learn the address of the estimator's function. */
 #ifdef __GNUC__
-__attribute__((noinline, noclone))
+__attribute__((noinline))
 #endif
 void lc_replay_begin(lc_radiance_fn *radiance)
 {

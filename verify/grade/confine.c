@@ -166,17 +166,17 @@ static int allow_computing(scmp_filter_ctx filter, int samples)
         failed |= seccomp_rule_add(filter, SCMP_ACT_ALLOW, computing[i], 0);
     for (int i = 0; i < 3; ++i)
         failed |= seccomp_rule_add(filter, SCMP_ACT_ALLOW, SCMP_SYS(write), 1,
-                                   SCMP_A0(SCMP_CMP_EQ, (scmp_datum_t)outputs[i]));
+                                   SCMP_A0(SCMP_CMP_EQ, (scmp_datum_t)outputs[i], 0));
     /* dlopen's way, which Landlock restricts further; fstat of the C library; the question whether stdout is a terminal. */
     failed |= seccomp_rule_add(filter, SCMP_ACT_ALLOW, SCMP_SYS(openat), 1,
-                               SCMP_A2(SCMP_CMP_EQ, O_RDONLY | O_CLOEXEC));
+                               SCMP_A2(SCMP_CMP_EQ, O_RDONLY | O_CLOEXEC, 0));
     failed |= seccomp_rule_add(filter, SCMP_ACT_ERRNO(EACCES), SCMP_SYS(openat), 1,
-                               SCMP_A2(SCMP_CMP_NE, O_RDONLY | O_CLOEXEC));
-    failed |= seccomp_rule_add(filter, SCMP_ACT_ALLOW, SCMP_SYS(newfstatat), 1, SCMP_A3(SCMP_CMP_EQ, AT_EMPTY_PATH));
+                               SCMP_A2(SCMP_CMP_NE, O_RDONLY | O_CLOEXEC, 0));
+    failed |= seccomp_rule_add(filter, SCMP_ACT_ALLOW, SCMP_SYS(newfstatat), 1, SCMP_A3(SCMP_CMP_EQ, AT_EMPTY_PATH, 0));
     failed |= seccomp_rule_add(filter, SCMP_ACT_ERRNO(ENOTTY), SCMP_SYS(ioctl), 0);
     /* abort(), that is assert(); waking nobody. */
     failed |= seccomp_rule_add(filter, SCMP_ACT_ALLOW, SCMP_SYS(tgkill), 2,
-                               SCMP_A0(SCMP_CMP_EQ, (scmp_datum_t)getpid()), SCMP_A2(SCMP_CMP_EQ, SIGABRT));
+                               SCMP_A0(SCMP_CMP_EQ, (scmp_datum_t)getpid(), 0), SCMP_A2(SCMP_CMP_EQ, SIGABRT, 0));
     failed |= seccomp_rule_add(filter, SCMP_ACT_ALLOW, SCMP_SYS(futex), 1, SCMP_A1(SCMP_CMP_MASKED_EQ, 0x7f, 1));
     return failed == 0;
 }
