@@ -258,32 +258,34 @@ static void read_samples(crew *c, worker *w)
     }
 }
 
-static void read_said(crew *c, worker *w)
+/* Returns 0 when there is nothing more, now or for good. */
+static int read_said(crew *c, worker *w)
 {
     char buffer[4096];
     ssize_t n = read(w->said, buffer, sizeof buffer);
     if (n < 0 && (errno == EAGAIN || errno == EINTR))
-        return;
+        return 0;
     if (n <= 0) {
         end_pipe(&w->said);
-        return;
+        return 0;
     }
     for (ssize_t i = 0; i < n && c->said_used + 1 < sizeof c->result->said; ++i)
         c->result->said[c->said_used++] = buffer[i] ? buffer[i] : '?';
     c->result->said[c->said_used] = 0;
     c->printed += (uint64_t)n;
-    if (c->printed > c->task->limits->output) {
-        judge(c, LC_JAIL_OLE, "it printed more than %llu bytes", (unsigned long long)c->task->limits->output);
-        stop(w, OUTPUT);
-        end_pipe(&w->said);
-    }
+    if (c->printed <= c->task->limits->output)
+        return 1;
+    judge(c, LC_JAIL_OLE, "it printed more than %llu bytes", (unsigned long long)c->task->limits->output);
+    stop(w, OUTPUT);
+    end_pipe(&w->said);
+    return 0;
 }
 
 static void listen_to(crew *c)
 {
     struct pollfd polled[2 * MOST_WORKERS];
     worker *of[2 * MOST_WORKERS];
-    int count = 1;
+    nfds_t count = 1;
     while (count > 0 && c->result->verdict.code == LC_JAIL_AC) {
         count = 0;
         for (int i = 0; i < c->count; ++i) {
@@ -300,9 +302,9 @@ static void listen_to(crew *c)
             judge(c, LC_JAIL_TLE, "it was stopped after %g s without an end", c->task->limits->wall_seconds);
             return;
         }
-        if (count == 0 || poll(polled, (nfds_t)count, (int)fmin(1000 * left + 1, 60000)) <= 0)
+        if (count == 0 || poll(polled, count, (int)fmin(1000 * left + 1, 60000)) <= 0)
             continue;
-        for (int i = 0; i < count; ++i) {
+        for (nfds_t i = 0; i < count; ++i) {
             if (polled[i].revents && (i & 1) == 0)
                 read_samples(c, of[i]);
             else if (polled[i].revents && of[i]->said >= 0)
@@ -373,12 +375,14 @@ static void finish(crew *c)
         struct rusage use;
         int status = 0;
         end_pipe(&w->samples);
-        end_pipe(&w->said);
         if (w->pid <= 0)
             continue;
         kill(-w->pid, SIGKILL); /* once more its group, should it have managed to have one */
         while (wait4(w->pid, &status, 0, &use) < 0 && errno == EINTR)
             ;
+        while (w->said >= 0 && read_said(c, w)) /* what it left in the pipe */
+            ;
+        end_pipe(&w->said);
         double cpu = (double)(use.ru_utime.tv_sec + use.ru_stime.tv_sec) +
                      1e-6 * (double)(use.ru_utime.tv_usec + use.ru_stime.tv_usec);
         c->result->verdict.cpu_seconds += cpu;

@@ -71,6 +71,7 @@ static int copy_text(char *to, size_t size, const char *from)
 static int describe(const lc_estimator *e, const char *error)
 {
     lc_wire_description d;
+    fflush(NULL); /* as in render() */
     memset(&d, 0, sizeof d);
     if (!e) {
         copy_text(d.source, sizeof d.source, error);
@@ -115,6 +116,7 @@ static int render(const lc_wire_request *request, const lc_scene *scene, const l
     if (lc_film_create(&film, request->width, request->height, NULL) != LC_OK ||
         lc_render(film, scene, &recorder, &options, NULL) != LC_OK)
         return 0;
+    fflush(NULL); /* with the last sample we are killed */
     flush();
     return 1;
 }
