@@ -12,7 +12,7 @@
 
 #include "verify/grade/plugin.h"
 
-static char folder[64], program[4096], sources[4096], said[1 << 16];
+static char folder[64], program[4096], sources[4096], scenes[4096], said[1 << 16];
 
 static void make_absolute(char path[4096], const char *name)
 {
@@ -29,10 +29,9 @@ static void set_up(void)
     ck_assert_ptr_nonnull(mkdtemp(folder));
     make_absolute(program, name ? name : "build/lightcheck");
     make_absolute(sources, "estimators");
-    char scenes[4096]; /* the program need not stand beside them */
     make_absolute(scenes, "scenes");
     ck_assert_int_eq(chdir(folder), 0);
-    ck_assert_int_eq(symlink(scenes, "scenes"), 0);
+    ck_assert_int_eq(symlink(scenes, "scenes"), 0); /* a program two folders deep does not find them beside itself */
     ck_assert_int_eq(setenv("TMPDIR", folder, 1), 0);
     ck_assert_int_eq(setenv("LIGHTCHECK", program, 1), 0);
     ck_assert_int_eq(setenv("S", sources, 1), 0);
