@@ -166,7 +166,7 @@ Again: `--scene furnace_sphere`.
 
 """, """
 ### Other integrators and variants
-INTEGRATOR and VARIANT of the adapter choose. `direct` and `volpath` were judged on `plane_rectangle`, `plane_tilted`, `cornell`,
+INTEGRATOR and VARIANT of the adapter choose. Seen by hand, in runs that no target repeats: `direct` and `volpath` were judged on `plane_rectangle`, `plane_tilted`, `cornell`,
 and `direct` on `furnace_sphere` and `mirror_sky`: PASS and FAIL as for `path`, 1.0017 and 0.9416 where it fails; `ptracer` on `plane_tilted`: PASS. `llvm_ad_rgb`
 needs libllvm 19: with 14 and 16 the process aborts ("cannot select fminimum"); its corridor is off by the same 0.005%.
 

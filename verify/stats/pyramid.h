@@ -27,10 +27,8 @@ typedef struct lc_budget {
 } lc_budget;
 
 /* Shares of one channel of one row at one look: fail / (rows channels looks); pass / (rows looks), since all channels
- * must pass. NaN when the budget makes no sense (counts below 1, probabilities outside (0, 1)). Looks share equally.
- * Between looks at n and 4 n statistics correlate by 1/2, at six sigma hardly more than not at all, so Bonferroni loses
- * nothing worth having; weights that favour the last look would save some 6% of its samples and cost the first ones
- * more. */
+ * must pass. NaN when the budget makes no sense (counts below 1, probabilities outside (0, 1)). Looks share equally:
+ * Bonferroni holds however they correlate, and one look more costs some 1% more samples at six sigma. */
 double lc_budget_row_fail(const lc_budget *budget);
 double lc_budget_row_pass(const lc_budget *budget);
 
