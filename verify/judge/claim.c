@@ -32,7 +32,7 @@ static lc_status describe_missing(lc_row *row, const lc_error *err)
     return LC_OK;
 }
 
-void lc_row_describe(lc_row *row, const lc_pyramid *p)
+static void describe(lc_row *row, const lc_pyramid *p)
 {
     if (row->verdict == LC_ROW_FAIL) {
         double whole = 100 * (row->ratio - 1);
@@ -61,7 +61,7 @@ void lc_row_describe(lc_row *row, const lc_pyramid *p)
 /* ---- numbers -------------------------------------------------------------------------------------------------- */
 
 /* Writes what the pyramid of one channel found into the row. */
-void lc_row_numbers(lc_row *row, const lc_pyramid *p, int channel, double scale, double alpha_pass, double n)
+static void fill_numbers(lc_row *row, const lc_pyramid *p, int channel, double scale, double alpha_pass, double n)
 {
     const lc_student *s = &p->whole.student;
     lc_interval interval = lc_student_interval(s, 2 * alpha_pass);
@@ -88,6 +88,13 @@ double lc_row_hardness(const lc_pyramid *p, double scale)
     double step = p->verdict == LC_FAIL ? 2e9 : p->verdict == LC_GO_ON ? 1e9 : 0;
     double deviation = fabs(p->whole.student.difference) / scale;
     return step + (p->verdict == LC_FAIL && p->worst.level >= 0 ? fmin(-p->worst.log_p, 1e8) : fmin(deviation, 1e8));
+}
+
+void lc_row_conclude(lc_row *row, const lc_look *look, double alpha_pass)
+{
+    row->verdict = look->verdict == LC_PASS ? LC_ROW_PASS : look->verdict == LC_FAIL ? LC_ROW_FAIL : LC_ROW_UNDECIDED;
+    fill_numbers(row, &look->hardest, look->channel, look->scale, alpha_pass, (double)row->paths);
+    describe(row, &look->hardest);
 }
 
 /* Mean over the pixels that are not skipped, of the film or of the expected values. */
@@ -231,17 +238,10 @@ lc_status lc_claim_noise(double *c, lc_session *session, const lc_claim *claim, 
     return noise_of(c, session, &s, err);
 }
 
-typedef struct look_result {
-    lc_verdict verdict;
-    lc_pyramid hardest;
-    int channel;
-    double scale;
-} look_result;
-
-static lc_status judge_look(look_result *out, const lc_film *film, const lc_film *other, const lc_expected *expected,
-                            lc_estimate *field, lc_pyramid_plan *plan, double margin, double tolerance, lc_error *err)
+lc_status lc_judge_look(lc_look *out, const lc_film *film, const lc_film *other, const lc_expected *expected,
+                        const unsigned char *skip, lc_estimate *field, lc_pyramid_plan *plan, double margin,
+                        double tolerance, lc_error *err)
 {
-    const unsigned char *skip = expected ? expected->skip : NULL;
     double most = -1;
     out->verdict = LC_PASS;
     for (int c = 0; c < 3; ++c) {
@@ -360,7 +360,7 @@ static lc_status judge_statistically(lc_row *row, lc_session *session, const lc_
         return describe_missing(row, &why);
     if (status != LC_OK)
         return lc_fail(err, status, "%s", why.text);
-    look_result result = {.verdict = LC_GO_ON};
+    lc_look result = {.verdict = LC_GO_ON};
     lc_batches batches;
     int dependent = -1;
     for (int k = 0; status == LC_OK && k < look_count && result.verdict == LC_GO_ON && dependent < 0; ++k) {
@@ -381,14 +381,13 @@ static lc_status judge_statistically(lc_row *row, lc_session *session, const lc_
             compare_exactly(row, film, NULL, expected, fmax(claim->tolerance, 1e-9));
             return LC_OK;
         }
-        status = judge_look(&result, film, other, expected, field, &plan, row->margin, claim->tolerance, err);
+        status = lc_judge_look(&result, film, other, expected, expected ? expected->skip : NULL, field, &plan,
+                               row->margin, claim->tolerance, err);
         dependent = dependent_channel(&batches, film, NOISE_SHARE * alpha);
     }
     if (status != LC_OK)
         return status;
-    row->verdict = result.verdict == LC_PASS ? LC_ROW_PASS : result.verdict == LC_FAIL ? LC_ROW_FAIL : LC_ROW_UNDECIDED;
-    lc_row_numbers(row, &result.hardest, result.channel, result.scale, plan.alpha_pass, (double)row->paths);
-    lc_row_describe(row, &result.hardest);
+    lc_row_conclude(row, &result, plan.alpha_pass);
     if (dependent >= 0)
         describe_dependence(row, &batches, dependent);
     return LC_OK;
@@ -464,8 +463,8 @@ lc_status lc_compare_films(lc_row *row, const lc_film *a, const lc_film *b, doub
     if (!field)
         return lc_fail(err, LC_FAULT, "out of memory for the differences");
     lc_pyramid_plan_init(&plan, lc_budget_row_fail(&budget), lc_budget_row_pass(&budget));
-    look_result result;
-    lc_status status = judge_look(&result, a, b, NULL, field, &plan, margin, 0.0, err);
+    lc_look result;
+    lc_status status = lc_judge_look(&result, a, b, NULL, NULL, field, &plan, margin, 0.0, err);
     free(field);
     if (status != LC_OK)
         return status;
@@ -483,8 +482,6 @@ lc_status lc_compare_films(lc_row *row, const lc_film *a, const lc_film *b, doub
     row->margin = margin;
     row->samples = a->count;
     row->paths = a->count * (uint64_t)a->width * (uint64_t)a->height;
-    row->verdict = result.verdict == LC_PASS ? LC_ROW_PASS : result.verdict == LC_FAIL ? LC_ROW_FAIL : LC_ROW_UNDECIDED;
-    lc_row_numbers(row, &result.hardest, result.channel, result.scale, plan.alpha_pass, (double)row->paths);
-    lc_row_describe(row, &result.hardest);
+    lc_row_conclude(row, &result, plan.alpha_pass);
     return LC_OK;
 }

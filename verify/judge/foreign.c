@@ -238,48 +238,12 @@ static void find_inflation(lc_pyramid_plan *plan, const foreign_film *f)
 
 /* ---- decisions --------------------------------------------------------------------------------------------------- */
 
-typedef struct outcome {
-    lc_verdict verdict;
-    lc_pyramid hardest;
-    int channel;
-    double scale;
-} outcome;
-
 /* What the images are compared with. */
 typedef struct reference {
     const lc_expected *expected; /* or */
     const lc_film *film;         /* of ours */
     const unsigned char *skip;   /* pixels that are left out */
 } reference;
-
-static lc_status judge_look(outcome *out, const lc_film *film, const reference *r, lc_estimate *field,
-                            lc_pyramid_plan *plan, double margin, double tolerance, lc_error *err)
-{
-    double most = -1;
-    out->verdict = LC_PASS;
-    for (int c = 0; c < 3; ++c) {
-        lc_pyramid pyramid;
-        double scale = lc_claim_mean(r->film, r->expected, r->skip, c);
-        double unit = scale > 0 ? scale : lc_claim_mean(film, NULL, r->skip, c);
-        plan->margin[lc_pyramid_levels(film->width, film->height) - 1] = unit > 0 ? margin * unit : INFINITY;
-        plan->relative = r->film ? margin : 0;
-        lc_status status = r->film ? lc_field_two(field, film, r->film, c, tolerance * scale, err)
-                                   : lc_field_one(field, film, r->expected->rgb, c, tolerance * scale, err);
-        for (size_t i = 0; i < (size_t)film->width * (size_t)film->height; ++i)
-            if (r->skip[i])
-                field[i] = lc_estimate_zero();
-        if (status == LC_OK)
-            status = lc_pyramid_judge(&pyramid, field, film->width, film->height, plan, err);
-        if (status != LC_OK)
-            return status;
-        out->verdict = lc_verdict_both(out->verdict, pyramid.verdict);
-        if (lc_row_hardness(&pyramid, unit) > most) {
-            most = lc_row_hardness(&pyramid, unit);
-            *out = (outcome){out->verdict, pyramid, c, unit};
-        }
-    }
-    return LC_OK;
-}
 
 /* Where images do not differ by more than rounding, each pixel is held to the value. `slack` is absolute. */
 static int is_still(const lc_film *film, const unsigned char *skip, double slack)
@@ -370,7 +334,7 @@ static lc_status judge(lc_row *row, lc_session *session, const lc_claim *claim, 
     double tolerance = fmax(claim->tolerance, o->renderer->rounding);
     lc_budget budget = {o->false_fail, o->false_pass, session->rows, 3, LC_MOST_LOOKS};
     lc_pyramid_plan pyramid;
-    outcome result = {.verdict = LC_GO_ON};
+    lc_look result = {.verdict = LC_GO_ON};
     for (int k = 0; k < LOOKS && result.verdict == LC_GO_ON; ++k) {
         foreign_film *f;
         uint64_t images = (uint64_t)IMAGES << (2 * k);
@@ -391,13 +355,11 @@ static lc_status judge(lc_row *row, lc_session *session, const lc_claim *claim, 
         row->exact = 0;
         lc_pyramid_plan_init(&pyramid, lc_budget_row_fail(&budget), lc_budget_row_pass(&budget));
         find_inflation(&pyramid, f);
-        status = judge_look(&result, f->film, r, field, &pyramid, row->margin, tolerance, err);
+        status = lc_judge_look(&result, f->film, r->film, r->expected, r->skip, field, &pyramid, row->margin, tolerance, err);
         if (status != LC_OK)
             return status;
     }
-    row->verdict = result.verdict == LC_PASS ? LC_ROW_PASS : result.verdict == LC_FAIL ? LC_ROW_FAIL : LC_ROW_UNDECIDED;
-    lc_row_numbers(row, &result.hardest, result.channel, result.scale, pyramid.alpha_pass, (double)row->paths);
-    lc_row_describe(row, &result.hardest);
+    lc_row_conclude(row, &result, pyramid.alpha_pass);
     return LC_OK;
 }
 

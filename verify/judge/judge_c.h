@@ -79,11 +79,25 @@ lc_status lc_claim_noise(double *c, lc_session *session, const lc_claim *claim, 
                          lc_error *err);
 /* Mean over the pixels that are not skipped, of the film or else of the expected values. */
 double lc_claim_mean(const lc_film *film, const lc_expected *expected, const unsigned char *skip, int channel);
+/* What a look found, in the hardest of three channels. */
+typedef struct lc_look {
+    lc_verdict verdict; /* of all channels */
+    lc_pyramid hardest;
+    int channel;
+    double scale; /* what 1 is [radiance] */
+} lc_look;
+
+/* Holds the film against `other` or, where that is NULL, against `expected`, without the pixels of `skip` (may be NULL); `margin` and
+ * `tolerance` are relative to the mean of what it is held against. `field` has room for the differences of one channel. */
+lc_status lc_judge_look(lc_look *out, const lc_film *film, const lc_film *other, const lc_expected *expected,
+                        const unsigned char *skip, lc_estimate *field, lc_pyramid_plan *plan, double margin,
+                        double tolerance, lc_error *err);
+/* Verdict, numbers and words of the last look. */
+void lc_row_conclude(lc_row *row, const lc_look *look, double alpha_pass);
+
 /* How hard a channel was: the hardest one is shown. */
 double lc_row_hardness(const lc_pyramid *p, double scale);
-/* Writes into the row what the pyramid of a channel found; then FAIL or UNDECIDED in words; then, of a film, bad samples. */
-void lc_row_numbers(lc_row *row, const lc_pyramid *p, int channel, double scale, double alpha_pass, double n);
-void lc_row_describe(lc_row *row, const lc_pyramid *p);
+/* Bad samples, of a film, in words. */
 void lc_row_bad(lc_row *row, const lc_film *film, uint64_t seed);
 
 #endif

@@ -63,14 +63,7 @@ static int all_agree(const lc_film *film, const lc_film *difference, double tole
     return light > 0;
 }
 
-typedef struct outcome {
-    lc_verdict verdict;
-    lc_pyramid hardest;
-    int channel;
-    double scale;
-} outcome;
-
-static lc_status judge_look(outcome *out, const lc_film *film, const lc_film *difference, const double *zero,
+static lc_status judge_look(lc_look *out, const lc_film *film, const lc_film *difference, const double *zero,
                             lc_estimate *field, lc_pyramid_plan *plan, double margin, double tolerance, lc_error *err)
 {
     double most = -1;
@@ -151,7 +144,7 @@ static lc_status judge(lc_row *row, lc_session *session, const lc_claim *claim, 
     lc_pyramid_plan_init(&plan, lc_budget_row_fail(&budget), lc_budget_row_pass(&budget));
     if (claim->whole_only)
         lc_plan_whole(&plan, desc->width, desc->height);
-    outcome result = {.verdict = LC_GO_ON};
+    lc_look result = {.verdict = LC_GO_ON};
     for (int k = 0; k < look_count && result.verdict == LC_GO_ON; ++k) {
         row->samples = looks[k];
         row->paths = row->samples * (uint64_t)pixels;
@@ -164,9 +157,7 @@ static lc_status judge(lc_row *row, lc_session *session, const lc_claim *claim, 
         if (status != LC_OK)
             return status;
     }
-    row->verdict = result.verdict == LC_PASS ? LC_ROW_PASS : result.verdict == LC_FAIL ? LC_ROW_FAIL : LC_ROW_UNDECIDED;
-    lc_row_numbers(row, &result.hardest, result.channel, result.scale, plan.alpha_pass, (double)row->paths);
-    lc_row_describe(row, &result.hardest);
+    lc_row_conclude(row, &result, plan.alpha_pass);
     return LC_OK;
 }
 

@@ -7,23 +7,8 @@
 #include <string.h>
 
 #include "estimators/registry.h"
-#include "io/scene_path.h"
-#include "io/scene_read.h"
 #include "verify/report/diagnosis.h"
-
-static lc_status load_scene(lc_scene **out, const char *name, lc_error *err)
-{
-    char path[LC_PATH_SIZE];
-    lc_scene_desc desc;
-    lc_status status = lc_scene_locate(path, name, err);
-    if (status == LC_OK)
-        status = lc_scene_read(&desc, path, NULL, 0, err);
-    if (status != LC_OK)
-        return status;
-    status = lc_scene_build(out, &desc, err);
-    lc_scene_desc_release(&desc);
-    return status;
-}
+#include "verify/tests/load_help.h"
 
 static void diagnose(lc_diagnosis *out, const lc_estimator *estimator)
 {

@@ -6,9 +6,8 @@
 #include <stdio.h>
 
 #include "estimators/registry.h"
-#include "io/scene_path.h"
-#include "io/scene_read.h"
 #include "verify/judge/judge.h"
+#include "verify/tests/load_help.h"
 #include "verify/tests/scene_help.h"
 
 static lc_error err;
@@ -145,20 +144,6 @@ LENS(radius_is_u, RADIUS_IS_U)
 LENS(square_lens, SQUARE_LENS)
 LENS(wide_lens, WIDE_LENS)
 LENS(sharp_everywhere, SHARP_EVERYWHERE)
-
-static lc_status load_scene(lc_scene **out, const char *name, lc_error *why)
-{
-    char path[LC_PATH_SIZE];
-    lc_scene_desc desc;
-    lc_status status = lc_scene_locate(path, name, why);
-    if (status == LC_OK)
-        status = lc_scene_read(&desc, path, NULL, 0, why);
-    if (status != LC_OK)
-        return status;
-    status = lc_scene_build(out, &desc, why);
-    lc_scene_desc_release(&desc);
-    return status;
-}
 
 static lc_status verdict_of(const lc_estimator *estimator, const char *scene, char reason[1024])
 {

@@ -7,10 +7,9 @@
 #include <string.h>
 
 #include "estimators/registry.h"
-#include "io/scene_path.h"
-#include "io/scene_read.h"
 #include "verify/judge/judge.h"
 #include "verify/mutants/registry.h"
+#include "verify/tests/load_help.h"
 
 #define HEADING "## The lecture, sentence by sentence"
 
@@ -56,20 +55,6 @@ static int read_table(sentence *out, int most)
     }
     fclose(file);
     return rows - 2;
-}
-
-static lc_status load_scene(lc_scene **out, const char *name, lc_error *err)
-{
-    char path[LC_PATH_SIZE];
-    lc_scene_desc desc;
-    lc_status status = lc_scene_locate(path, name, err);
-    if (status == LC_OK)
-        status = lc_scene_read(&desc, path, NULL, 0, err);
-    if (status != LC_OK)
-        return status;
-    status = lc_scene_build(out, &desc, err);
-    lc_scene_desc_release(&desc);
-    return status;
 }
 
 /* NULL for the host; *is_mutant tells where it was found. */

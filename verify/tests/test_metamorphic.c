@@ -6,10 +6,9 @@
 #include <stdlib.h>
 
 #include "estimators/registry.h"
-#include "io/scene_path.h"
-#include "io/scene_read.h"
 #include "verify/checks/transform.h"
 #include "verify/judge/judge.h"
+#include "verify/tests/load_help.h"
 #include "verify/tests/scene_help.h"
 
 enum { SIDE = 16 };
@@ -27,10 +26,7 @@ static lc_scene_desc read_scene(const char *name)
 
 static lc_status load_small(lc_scene **out, const char *name, lc_error *err)
 {
-    lc_scene_desc desc = read_scene(name);
-    lc_status status = lc_scene_build(out, &desc, err);
-    lc_scene_desc_release(&desc);
-    return status;
+    return load_sized(out, name, SIDE, err);
 }
 
 static const lc_estimator *find(const char *name)

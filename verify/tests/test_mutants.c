@@ -7,10 +7,9 @@
 #include <string.h>
 
 #include "estimators/registry.h"
-#include "io/scene_path.h"
-#include "io/scene_read.h"
 #include "verify/judge/judge.h"
 #include "verify/mutants/registry.h"
+#include "verify/tests/load_help.h"
 
 /* Which check catches it, and where. A scene blind to the bug would leave it UNDECIDED or, worse, let it PASS. */
 static const struct row {
@@ -150,20 +149,6 @@ static const lc_estimator *find_estimator(const char *name)
         if (strcmp((*e)->name, name) == 0)
             return *e;
     return NULL;
-}
-
-static lc_status load_scene(lc_scene **out, const char *name, lc_error *err)
-{
-    char path[LC_PATH_SIZE];
-    lc_scene_desc desc;
-    lc_status status = lc_scene_locate(path, name, err);
-    if (status == LC_OK)
-        status = lc_scene_read(&desc, path, NULL, 0, err);
-    if (status != LC_OK)
-        return status;
-    status = lc_scene_build(out, &desc, err);
-    lc_scene_desc_release(&desc);
-    return status;
 }
 
 static void run(lc_report *report, const lc_estimator *estimator, const struct row *row, double margin)

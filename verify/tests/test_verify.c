@@ -7,28 +7,17 @@
 #include <stdlib.h>
 
 #include "estimators/registry.h"
-#include "io/scene_path.h"
-#include "io/scene_read.h"
 #include "verify/checks/family.h"
 #include "verify/judge/judge_c.h"
 #include "verify/stats/stats.h"
+#include "verify/tests/load_help.h"
 #include "verify/tests/scene_help.h"
 
 enum { SIDE = 16 };
 
 static lc_status load_small(lc_scene **out, const char *name, lc_error *err)
 {
-    char path[LC_PATH_SIZE];
-    lc_scene_desc desc;
-    lc_status status = lc_scene_locate(path, name, err);
-    if (status == LC_OK)
-        status = lc_scene_read(&desc, path, NULL, 0, err);
-    if (status != LC_OK)
-        return status;
-    desc.width = desc.height = SIDE;
-    status = lc_scene_build(out, &desc, err);
-    lc_scene_desc_release(&desc);
-    return status;
+    return load_sized(out, name, SIDE, err);
 }
 
 /* The quick suite, but no row may take more than 4096 samples a pixel. */
