@@ -179,7 +179,7 @@ static void null_trial(void *user, int trial)
 /* The claim of the analytic check about the first arm; what it expects is the session's. */
 static lc_status find_expected(experiment *e, lc_session *session, lc_error *err)
 {
-    lc_claims claims = {NULL, 0};
+    lc_claims claims = {.count = 0};
     lc_status status = LC_OK;
     for (const lc_check *const *c = lc_checks; *c && status == LC_OK; ++c)
         if (strcmp((*c)->name, "analytic") == 0)
