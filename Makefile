@@ -63,7 +63,7 @@ WORKER := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard src/core/*.c verify/grade/w
 PROOF := $(patsubst %.c,$(BUILD)/obj/%.o,$(filter-out %/calibrate.c %/power.c %/kill.c,$(wildcard verify/proof/*.c)))
 
 .PHONY: all check verify verify-table full-table pictures povray-reference mitsuba-table renderer-study lint asan-check \
-        calibrate power judge-mutants mutants bench needs fresh clean help
+        calibrate power judge-mutants mutants diagnosis-proof bench needs fresh clean help
 all: $(BUILD)/lightcheck $(BUILD)/lightcheck-worker $(BUILD)/obj/estimators/template.o ## build the program
 
 # A plug-in finds the functions of lightcheck.h in the program, and no others.
@@ -160,6 +160,10 @@ bench: all ## how fast the tracer is on this machine: paths a second of one core
 
 mutants: $(BUILD)/kill ## which checks kill which mutants, and that right variants pass: results/mutants.md
 	$(BUILD)/kill -s $(BUILD)/kill.state -o results/mutants.md
+
+diagnosis-proof: all ## wrong files that diagnose has never seen: results/diagnosis.md
+	@bash verify/tests/diagnosis.sh $(BUILD)/lightcheck $(BUILD)/held_out > $(BUILD)/diagnosis.md; status=$$?; \
+	    cp $(BUILD)/diagnosis.md results/diagnosis.md; exit $$status
 
 needs: ## say what is missing, if anything is
 	@:
