@@ -10,11 +10,12 @@
 #include "verify/grade/jail.h"
 #include "verify/grade/plugin.h"
 #include "verify/judge/judge.h"
+#include "verify/report/diagnosis.h"
 
 typedef struct verify_arguments {
     const char *suite, *estimator, *check, *scene, *seed, *format, *report, *renderer;
     double margin, budget, seconds;
-    int threads, measure, jail;
+    int threads, measure, jail, no_diagnose;
 } verify_arguments;
 
 static lc_status load_scene(lc_scene **out, const char *name, lc_error *err)
@@ -137,6 +138,28 @@ static lc_status write_report(const lc_report *report, const verify_arguments *a
     return LC_OK;
 }
 
+/* After a whole suite that shows the one under test wrong: what it behaves like. That costs no more than `lightcheck diagnose`; that it
+ * can't be told is no error. */
+static lc_status explain(lc_report *report, const lc_verify_options *options, const verify_arguments *a, lc_error *err)
+{
+    static lc_diagnosis diagnosis;
+    lc_diagnose_options how = {options->seed, options->threads};
+    lc_error why = {""};
+    if (lc_report_status(report) != LC_WRONG || a->no_diagnose || !a->estimator || a->check || a->scene)
+        return LC_OK;
+    if (lc_diagnose(&diagnosis, options->estimator, &how, load_scene, &why) != LC_OK) {
+        fprintf(stderr, "lightcheck verify: no diagnosis: %s\n", why.text);
+        return LC_OK;
+    }
+    if (!diagnosis.is_wrong)
+        return LC_OK;
+    report->behaviour = malloc(sizeof *report->behaviour);
+    if (!report->behaviour)
+        return lc_fail(err, LC_FAULT, "out of memory for the diagnosis");
+    lc_report_behaviour(report->behaviour, &diagnosis, options->estimator->name);
+    return LC_OK;
+}
+
 static lc_status verify(void *user, const lc_strings *rest, lc_error *err)
 {
     const verify_arguments *a = user;
@@ -178,6 +201,8 @@ static lc_status verify(void *user, const lc_strings *rest, lc_error *err)
         status = report.note_count ? lc_fail(err, LC_BAD_INPUT, "nothing to verify: %s", report.notes[0].reason)
                                    : lc_fail(err, LC_BAD_INPUT, "nothing to verify: no check applies to what was selected");
     if (status == LC_OK)
+        status = explain(&report, &options, a, err);
+    if (status == LC_OK)
         status = write_report(&report, a, err);
     if (status == LC_OK && jail)
         fprintf(stderr, "lightcheck verify: %s ran in a jail: %s\n", a->estimator, lc_jail_level(jail));
@@ -211,6 +236,7 @@ static int run(const lc_command *self, int argc, char **argv)
         {0, "format", LC_OPT_CHOICE, &a.format, "text|json|junit", "default text", 0, 0, "text|json|junit"},
         {0, "measure", LC_OPT_FLAG, &a.measure, NULL, "prints the noise of each cell, as verify/judge/suites.c has it",
          0, 0, NULL},
+        {0, "no-diagnose", LC_OPT_FLAG, &a.no_diagnose, NULL, "does not look for the bug of the one that -e names, if it is wrong", 0, 0, NULL},
         {0, "report", LC_OPT_STRING, &a.report, "DIR", "writes all formats there, too", 0, 0, NULL},
         {0, NULL, LC_OPT_FLAG, NULL, NULL, NULL, 0, 0, NULL},
     };

@@ -390,7 +390,7 @@ lc_status lc_diagnose(lc_diagnosis *out, const lc_estimator *subject, const lc_d
 {
     diagnosing d = {.out = out, .options = options};
     lc_estimator copy = *subject; /* a mutant may be diagnosed as itself, from another stream */
-    d.subject = &copy;
+    d.subject = subject->radiance == lc_radiance_outside ? subject : &copy; /* one that runs elsewhere is known by its address */
     memset(out, 0, sizeof *out);
     lc_status status = choose_arms(&d, subject, err);
     for (int i = 0; i < VIEWS && status == LC_OK && !out->has_bad; ++i)

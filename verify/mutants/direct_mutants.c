@@ -33,7 +33,8 @@ enum {
     AREA_TWICE = 1 << 24,
     LIGHT_SQUARED = 1 << 25,
     SHADOWED_BY_LIGHT = 1 << 26,
-    COMPARES_DISTANCES = 1 << 27
+    COMPARES_DISTANCES = 1 << 27,
+    BY_HAND = 1 << 28 /* the BRDF: it does not know which side is seen */
 };
 
 /* The normal on the viewer's side. */
@@ -83,7 +84,7 @@ static void move_to_centre(const lc_scene *scene, int light, const lc_hit *hit, 
 /* Lambert's BRDF by hand where the bug needs it: lc_bsdf_eval() is black below the horizon and would hide it. */
 static lc_rgb reflectance(const lc_scene *scene, const lc_hit *hit, lc_vec3 wi, unsigned bugs)
 {
-    if (bugs & BELOW_HORIZON)
+    if (bugs & (BELOW_HORIZON | BY_HAND))
         return lc_rgb_scale(LC_INV_PI, lc_material_at(scene, hit).diffuse);
     lc_rgb f = lc_bsdf_eval(scene, hit, wi);
     return bugs & RED_ONLY ? lc_color(f.r, f.r, f.r) : f;
@@ -166,7 +167,7 @@ static lc_rgb by_area(const lc_scene *scene, const lc_hit *hit, lc_sampler *samp
         cos_light = 1;
     double factor = (bugs & NO_LIGHT_COUNT ? lc_light_count(scene) : 1) * (bugs & NO_PI ? LC_PI : 1.0);
     double g = factor * cos_surface * cos_light * (bugs & JACOBIAN_INVERTED ? d2 : 1 / d2);
-    return lc_rgb_scale(g / light.pdf_area, lc_rgb_mul(lc_bsdf_eval(scene, hit, light.wi), light.radiance));
+    return lc_rgb_scale(g / light.pdf_area, lc_rgb_mul(reflectance(scene, hit, light.wi, bugs), light.radiance));
 }
 
 /* Directions over the hemisphere, or what somebody took for them. */
@@ -271,6 +272,9 @@ static lc_rgb sum(direct_fn *direct, unsigned bugs, const lc_scene *scene, const
     X(light_normal_not_turned, NORMAL_NOT_TURNED, "the normal is not turned to the viewer", "sides", \
       "Scenes at hand had all their normals outward.", "seen from its back: black", \
       "Which way does a normal point, seen from either side?") \
+    X(light_normal_leaks, NORMAL_NOT_TURNED | BY_HAND, "the normal is not turned to the viewer, and the BRDF is written by hand", "sides", \
+      "albedo / pi does not know the side: a surface seen from its back shows the light on its front.", \
+      "seen from its back: lit from the other side", "Which way does a normal point, seen from either side?") \
     X(light_double_area, AREA_TWICE, "lamps count with twice their area", "density", \
       "|e1 x e2| without the 1/2 of a triangle (mitsuba-renderer/mitsuba3 issue 42: brighter with a mesh " \
       "as the emitter).", "area lights: 2, point lights: 1", \
@@ -306,6 +310,9 @@ const lc_mutant lc_light_mutants[] = {LIGHT(LC_MUTANT_ROW) LC_MUTANT_END};
     X(three_point_normal_not_turned, NORMAL_NOT_TURNED, "the normal is not turned to the viewer", "sides", \
       "Scenes at hand had all their normals outward.", "seen from its back: black", \
       "Which way does a normal point, seen from either side?") \
+    X(three_point_normal_leaks, NORMAL_NOT_TURNED | BY_HAND, "the normal is not turned to the viewer, and the BRDF is written by hand", "sides", \
+      "albedo / pi does not know the side: a surface seen from its back shows the light on its front.", \
+      "seen from its back: lit from the other side", "Which way does a normal point, seen from either side?") \
     X(three_point_back_emits, BACK_EMITS, "lights shine from their backs, too", "sides", \
       "The absolute value of the light's cosine.", "a lamp seen from behind: not black", \
       "Which sides of a lamp shine?") \

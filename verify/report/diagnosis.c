@@ -29,7 +29,10 @@ static void print_names(FILE *out, const lc_diagnosis *d)
             fprintf(out, "  %s: %s\n", d->names[i]->estimator->name, d->names[i]->estimator->summary);
         return;
     }
-    fprintf(out, "behaves as none of %d known bugs\n", d->candidates);
+    if (d->is_certain)
+        fprintf(out, "behaves as none of %d known bugs\n", d->candidates);
+    else
+        fprintf(out, "not all was decided; none of %d known bugs is shown equal to it\n", d->candidates);
 }
 
 /* The category that all names share, if they do. */
@@ -62,4 +65,18 @@ void lc_report_diagnosis(FILE *out, const lc_diagnosis *d, const char *name, lc_
     for (int i = 0; i < d->line_count; ++i)
         fprintf(out, "  measured: %s\n", d->lines[i]);
     fprintf(out, "  against %d known bugs on %d views, %.1f M paths\n", d->candidates, d->view_count, (double)d->paths * 1e-6);
+}
+
+void lc_report_behaviour(lc_behaviour *out, const lc_diagnosis *d, const char *name)
+{
+    memset(out, 0, sizeof *out);
+    snprintf(out->estimator, sizeof out->estimator, "%s", name);
+    snprintf(out->of, sizeof out->of, "%s", d->name_count == 1 ? d->names[0]->of : d->truth->name);
+    out->is_certain = d->is_certain;
+    for (int i = 0; i < d->name_count && i < (int)(sizeof out->names / sizeof out->names[0]); ++i, ++out->name_count) {
+        snprintf(out->names[i], sizeof out->names[i], "%s", d->names[i]->estimator->name);
+        snprintf(out->summaries[i], sizeof out->summaries[i], "%s", d->names[i]->estimator->summary);
+    }
+    for (int i = 0; i < d->line_count; ++i, ++out->line_count)
+        snprintf(out->lines[i], sizeof out->lines[i], "%s", d->lines[i]);
 }

@@ -11,4 +11,7 @@ typedef enum lc_hint { LC_HINT_NONE, LC_HINT_CATEGORY, LC_HINT_NAME } lc_hint;
 
 void lc_report_diagnosis(FILE *out, const lc_diagnosis *diagnosis, const char *name, lc_hint hint);
 
+/* The same for a report of rows: everything. */
+void lc_report_behaviour(lc_behaviour *out, const lc_diagnosis *diagnosis, const char *name);
+
 #endif

@@ -47,6 +47,17 @@ static json_t *notes_json(const lc_report *report)
     return notes;
 }
 
+static json_t *behaviour_json(const lc_behaviour *b)
+{
+    json_t *names = json_array(), *lines = json_array();
+    for (int i = 0; names && i < b->name_count; ++i)
+        json_array_append_new(names, json_pack("{s:s, s:s}", "name", b->names[i], "summary", b->summaries[i]));
+    for (int i = 0; lines && i < b->line_count; ++i)
+        json_array_append_new(lines, json_string(b->lines[i]));
+    return json_pack("{s:s, s:s, s:b, s:o, s:o}", "estimator", b->estimator, "of", b->of, "certain", b->is_certain, "bugs", names,
+                     "measured", lines);
+}
+
 lc_status lc_report_json(FILE *out, const lc_report *report, lc_error *err)
 {
     json_t *rows = json_array();
@@ -62,6 +73,8 @@ lc_status lc_report_json(FILE *out, const lc_report *report, lc_error *err)
                           notes_json(report));
     if (!o)
         return lc_fail(err, LC_FAULT, "out of memory for the JSON report");
+    if (report->behaviour)
+        json_object_set_new(o, "diagnosis", behaviour_json(report->behaviour));
     json_dumpf(o, out, JSON_INDENT(2) | JSON_REAL_PRECISION(12));
     fputc('\n', out);
     json_decref(o);

@@ -38,6 +38,7 @@ void lc_report_release(lc_report *report)
 {
     free(report->rows);
     free(report->notes);
+    free(report->behaviour);
     memset(report, 0, sizeof *report);
 }
 

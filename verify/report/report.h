@@ -39,6 +39,15 @@ typedef struct lc_note {
     char check[32], scene[64], reason[256];
 } lc_note;
 
+/* What the wrong estimator behaves like, in words. */
+typedef struct lc_behaviour {
+    char estimator[64], of[64]; /* and what it should have been */
+    int is_certain;             /* it was shown different from everything but `names` */
+    int name_count, line_count;
+    char names[8][64], summaries[8][160];
+    char lines[8][240]; /* what was measured */
+} lc_behaviour;
+
 typedef struct lc_report {
     lc_row *rows;
     int count;
@@ -50,6 +59,7 @@ typedef struct lc_report {
     int note_count;
     int not_applicable;            /* pairs of estimator and scene that no check applies to */
     uint64_t paths;                /* rendered in all */
+    lc_behaviour *behaviour;       /* NULL: nobody asked. Released with the report */
 } lc_report;
 
 /* Appends a zeroed row, or NULL without memory. */

@@ -54,6 +54,24 @@ static void print_trouble(FILE *out, const lc_row *row)
     fprintf(out, "    again: %s\n", row->reproduce);
 }
 
+static void print_behaviour(FILE *out, const lc_behaviour *b)
+{
+    if (b->name_count == 1 && b->is_certain)
+        fprintf(out, "\n%s behaves exactly as %s with this bug: %s (%s)\n", b->estimator, b->of, b->summaries[0], b->names[0]);
+    else if (b->name_count) {
+        fprintf(out, "\n%s: %s\n", b->estimator,
+                b->is_certain ? "behaves exactly as any of these, which no view tells apart"
+                              : "not all was decided; what was shown equal to it, while the truth was not");
+        for (int i = 0; i < b->name_count; ++i)
+            fprintf(out, "    %s: %s\n", b->names[i], b->summaries[i]);
+    } else
+        fprintf(out, b->is_certain ? "\n%s behaves as none of the known bugs\n"
+                                   : "\n%s: not all was decided; no known bug is shown equal to it\n",
+                b->estimator);
+    for (int i = 0; i < b->line_count; ++i)
+        fprintf(out, "    measured: %s\n", b->lines[i]);
+}
+
 void lc_report_text(FILE *out, const lc_report *report)
 {
     int counts[3] = {0, 0, 0};
@@ -70,6 +88,8 @@ void lc_report_text(FILE *out, const lc_report *report)
         const lc_note *n = &report->notes[i];
         fprintf(out, "%s%-10s %-18s no row: %s\n", i ? "" : "\n", n->check, n->scene, n->reason);
     }
+    if (report->behaviour)
+        print_behaviour(out, report->behaviour);
     fprintf(out, "\nestimate: mean of reflected light / what is expected, in the hardest of three channels; PASS: "
                  "shown within 1 +- margin.\n");
     fprintf(out, "%s", report->budget);

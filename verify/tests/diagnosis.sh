@@ -25,7 +25,7 @@ diagnose() {
     seconds=$(cat "$folder/$1.time")
     grep -q 'is wrong$' "$folder/$1.out" || said=none
     grep -q '^behaves as none' "$folder/$1.out" && said=none
-    grep -q '^not all' "$folder/$1.out" && said=$(sed -n 's/^  \([a-z_0-9]*\): .*/?\1/p' "$folder/$1.out" | paste -sd, -)
+    grep -q '^not all was decided; what' "$folder/$1.out" && said=$(sed -n 's/^  \([a-z_0-9]*\): .*/?\1/p' "$folder/$1.out" | paste -sd, -)
     grep -q '^behaves exactly as any' "$folder/$1.out" && said=$(sed -n 's/^  \([a-z_0-9]*\): .*/\1/p' "$folder/$1.out" | paste -sd, -)
     grep -q '^behaves exactly as [a-z_0-9]* with' "$folder/$1.out" &&
         said=$(sed -n 's/^behaves exactly as .* (\([a-z_0-9]*\))$/\1/p' "$folder/$1.out")

@@ -142,6 +142,8 @@ static const struct row {
     {"dielectric_half_and_half", "specular", "glass_slab"},
     {"light_shadow_hits_light", "analytic", "mixed_lights"},
     {"three_point_shadow_compares", "analytic", "plane_tilted"},
+    {"light_normal_leaks", "equality", "bright_room"},
+    {"three_point_normal_leaks", "equality", "bright_room"},
     {"mis_other_density", "analytic", "mixed_lights"},
     {"path_roulette_dimmest", "furnace", "furnace_sphere"},
 };

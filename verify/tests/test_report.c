@@ -223,6 +223,45 @@ START_TEST(text_tells_what_failed)
 }
 END_TEST
 
+/* Below the table, and only where somebody asked. */
+START_TEST(behaviour_is_told)
+{
+    lc_report report;
+    fill(&report);
+    write_report(&report, "text");
+    ck_assert_ptr_null(strstr(text, "behaves"));
+    write_report(&report, "json");
+    ck_assert_ptr_null(strstr(text, "diagnosis"));
+    report.behaviour = calloc(1, sizeof *report.behaviour);
+    ck_assert_ptr_nonnull(report.behaviour);
+    lc_behaviour *b = report.behaviour;
+    strcpy(b->estimator, "mine");
+    strcpy(b->of, "light_direct");
+    strcpy(b->names[0], "light_no_pi");
+    strcpy(b->summaries[0], "no pi");
+    strcpy(b->lines[0], "a factor");
+    b->name_count = b->line_count = b->is_certain = 1;
+    write_report(&report, "text");
+    ck_assert_ptr_nonnull(strstr(text, "mine behaves exactly as light_direct with this bug: no pi (light_no_pi)\n    measured: a factor\n"));
+    write_report(&report, "json");
+    json_t *o = json_loads(text, 0, NULL), *diagnosis = json_object_get(o, "diagnosis");
+    ck_assert_str_eq(json_string_value(json_object_get(json_array_get(json_object_get(diagnosis, "bugs"), 0), "name")), "light_no_pi");
+    ck_assert(json_is_true(json_object_get(diagnosis, "certain")));
+    json_decref(o);
+    b->is_certain = 0;
+    write_report(&report, "text");
+    ck_assert_ptr_null(strstr(text, "exactly"));
+    b->name_count = 0;
+    write_report(&report, "text");
+    ck_assert_ptr_nonnull(strstr(text, "mine: not all was decided"));
+    b->is_certain = 1;
+    write_report(&report, "text");
+    ck_assert_ptr_nonnull(strstr(text, "mine behaves as none of the known bugs\n"));
+    lc_report_release(&report);
+    ck_assert_ptr_null(report.behaviour);
+}
+END_TEST
+
 START_TEST(status_is_the_worst_row)
 {
     lc_report report;
@@ -248,6 +287,7 @@ Suite *lc_suite_report(void)
     tcase_add_test(tc, json_has_null_for_what_is_no_number);
     tcase_add_test(tc, junit_is_well_formed);
     tcase_add_test(tc, text_tells_what_failed);
+    tcase_add_test(tc, behaviour_is_told);
     tcase_add_test(tc, status_is_the_worst_row);
     suite_add_tcase(suite, tc);
     return suite;
