@@ -217,7 +217,7 @@ static lc_texture checkers(lc_sampler *r, double low, double high)
 static lc_status make_furnace(lc_scene_desc *desc, lc_sampler *r, lc_error *err)
 {
     lc_affine to_world = pose(direction(r), within(r, 0, 2 * LC_PI), 1, 1, 1, lc_vec(0, 0, 0));
-    lc_texture albedo = checkers(r, 0.2, 0.8), radiance = checkers(r, 0.3, 3);
+    lc_texture albedo = checkers(r, 0.2, 0.8), radiance = checkers(r, 0.1, 1); /* what a file can say */
     lc_shape_desc *sphere = add(desc, LC_SPHERE, to_world, albedo, radiance, err);
     if (!sphere)
         return LC_FAULT;
