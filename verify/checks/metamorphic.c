@@ -183,7 +183,6 @@ static const struct row {
     {"albedo", "glossy_lamp", 1, 1, 1},
     {"albedo", "bright_mirrors", 2, 0, 3},
     {"albedo", "glass_sphere", 2, 0, 1},
-    {"albedo", "cornell_glass", 3, 1, 1},
     {"small", "five_lights", 1, 0, 1},
     {"small", "mixed_lights", 1, 1, 1},
     {"small", "bright_mirrors", 0, 0, 1},

@@ -65,6 +65,7 @@ const char *const lc_suite_scenes[] = {
     "random_disk",
     "random_sphere",
     "random_lights",
+    "random_occluder",
     "random_furnace",
     "random_corridor",
     "random_slab",
