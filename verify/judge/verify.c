@@ -105,16 +105,26 @@ static int is_selected(const lc_verify_options *o, const lc_claim *claim)
            (!o->scene || strcmp(o->scene, lc_scene_description(claim->scene)->name) == 0);
 }
 
+/* Keeps what is to be judged now; how many rows the whole run has is known already. */
+static void select_claims(lc_claims *claims, const lc_verify_options *o)
+{
+    const lc_scene *scene = NULL;
+    int kept = 0, nth = 0;
+    for (int i = 0; i < claims->count; ++i) {
+        nth += claims->items[i].scene != scene;
+        scene = claims->items[i].scene;
+        if (is_selected(o, &claims->items[i]) && (o->shards == 0 || nth % o->shards == o->shard))
+            claims->items[kept++] = claims->items[i];
+    }
+    claims->count = kept;
+}
+
 static lc_status judge_all(lc_report *report, lc_session *session, const lc_claims *claims, lc_error *err)
 {
     const lc_verify_options *o = session->options;
-    int selected = 0;
-    for (int i = 0; i < claims->count; ++i)
-        selected += is_selected(o, &claims->items[i]);
+    int selected = claims->count;
     const lc_scene *scene = NULL;
     for (int i = 0; i < claims->count; ++i) {
-        if (!is_selected(o, &claims->items[i]))
-            continue;
         if (claims->items[i].scene != scene)
             lc_session_clear(session);
         scene = claims->items[i].scene;
@@ -167,6 +177,7 @@ lc_status lc_verify(lc_report *report, const lc_verify_options *options, lc_load
         session.rows = claims.count;
         lc_budget budget = {options->false_fail, options->false_pass, session.rows, 3, LC_MOST_LOOKS};
         lc_budget_text(report->budget, sizeof report->budget, &budget, 64, 64);
+        select_claims(&claims, options);
         status = judge_all(report, &session, &claims, err);
     }
     lc_session_clear(&session);
