@@ -69,13 +69,13 @@ static lc_status plan(const lc_check *self, lc_claims *claims, const lc_scene *s
         is_quick |= strcmp(desc->name, quick_direct[i]) == 0 && !is_deep && !is_blind;
     lc_status status = LC_OK;
     int bounces = desc->max_bounces < estimator->max_bounces ? desc->max_bounces : estimator->max_bounces;
-    /* Of mirror and dielectric the deep row tells what the direct one would. */
-    int is_told = bounces > 1 && !is_quick && estimator->lobes & LC_MIRROR;
+    /* Of mirror and dielectric the deep row tells what the direct one would; of the scale, path's and three_point's do. */
+    int is_scaled = strcmp(desc->name, "cornell_small") == 0 || strcmp(desc->name, "cornell_large") == 0;
+    int is_told = (bounces > 1 && !is_quick && estimator->lobes & LC_MIRROR) || (is_scaled && is_blind);
     if (estimator->lobes & lc_scene_lobes(scene) & LC_DIFFUSE && !is_told)
         status = add(self, claims, scene, estimator, find_hub(scene, estimator, direct_hubs, 1, 1), 1, !is_quick, err);
     int is_quick_deep = strcmp(desc->name, estimator->lobes & LC_MIRROR ? "bright_mirrors" : "bright_room") == 0 ||
                         (estimator->emitters & LC_POINT && strncmp(desc->name, "cornell", 7) == 0);
-    int is_scaled = strcmp(desc->name, "cornell_small") == 0 || strcmp(desc->name, "cornell_large") == 0;
     if (status == LC_OK && bounces > 1 && !(is_scaled && estimator->lobes & LC_MIRROR)) /* path tells of the scale */
         status = add(self, claims, scene, estimator, find_hub(scene, estimator, deep_hubs, sizeof deep_hubs / sizeof deep_hubs[0], bounces), bounces,
                      !is_quick_deep, err);

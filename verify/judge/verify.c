@@ -105,16 +105,21 @@ static int is_selected(const lc_verify_options *o, const lc_claim *claim)
            (!o->scene || strcmp(o->scene, lc_scene_description(claim->scene)->name) == 0);
 }
 
-/* The claims that were asked for, in their order. */
+/* The claims that were asked for, in their order; a shard is every so many scenes. How many rows the whole run has is known already. */
 static lc_status judge_selected(lc_report *report, const lc_session *session, const lc_claims *claims, lc_error *err)
 {
+    const lc_verify_options *o = session->options;
     const lc_claim **selected = calloc((size_t)claims->count + 1, sizeof *selected);
-    int count = 0;
+    const lc_scene *scene = NULL;
+    int count = 0, nth = 0;
     if (!selected)
         return lc_fail(err, LC_FAULT, "out of memory for the rows");
-    for (int i = 0; i < claims->count; ++i)
-        if (is_selected(session->options, &claims->items[i]))
+    for (int i = 0; i < claims->count; ++i) {
+        nth += claims->items[i].scene != scene;
+        scene = claims->items[i].scene;
+        if (is_selected(o, &claims->items[i]) && (o->shards == 0 || nth % o->shards == o->shard))
             selected[count++] = &claims->items[i];
+    }
     lc_status status = lc_judge_all(report, session, selected, count, err);
     free(selected);
     return status;
