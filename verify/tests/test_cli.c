@@ -277,6 +277,7 @@ START_TEST(bad_values_are_2_and_say_what_is_good)
     run_bad(BAD, "neither `random` nor a whole number", "verify", "--seed", "dice");
     run_bad(BAD, "unknown check 'nosuch'", "verify", "-c", "nosuch");
     run_bad(BAD, "'nosuch' is not in the suites", "verify", "--scene", "nosuch");
+    run_bad(BAD, "0 <= I < N", "verify", "--shard", "3/3");
     run_bad(BAD, "nothing to verify", "verify", "-c", "furnace", "--scene", "cornell");
 }
 END_TEST
