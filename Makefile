@@ -62,13 +62,8 @@ WORKER := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard src/core/*.c verify/grade/w
 # The proofs of the judge: programs of their own, two of whose files have a main.
 PROOF := $(patsubst %.c,$(BUILD)/obj/%.o,$(filter-out %/calibrate.c %/power.c,$(wildcard verify/proof/*.c)))
 
-<<<<<<< HEAD
 .PHONY: all check verify verify-table full-table specular-proof pictures povray-reference mitsuba-table renderer-study lint asan-check \
-        calibrate power judge-mutants mutants bench needs fresh clean help
-=======
-.PHONY: all check verify verify-table full-table pictures povray-reference mitsuba-table renderer-study lint asan-check \
         calibrate power seeds few-seeds judge-mutants mutants bench needs fresh clean help
->>>>>>> main
 all: $(BUILD)/lightcheck $(BUILD)/lightcheck-worker $(BUILD)/obj/estimators/template.o ## build the program
 
 # A plug-in finds the functions of lightcheck.h in the program, and no others.

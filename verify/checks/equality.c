@@ -75,14 +75,11 @@ static lc_status plan(const lc_check *self, lc_claims *claims, const lc_scene *s
         is_quick |= strcmp(desc->name, quick_direct[i]) == 0 && !is_deep && !is_blind;
     lc_status status = LC_OK;
     int bounces = desc->max_bounces < estimator->max_bounces ? desc->max_bounces : estimator->max_bounces;
-<<<<<<< HEAD
-    /* Of mirror and dielectric the deep row tells what the direct one would, and where nothing is specular path's does. */
-    int is_told = !is_quick && estimator->lobes & LC_MIRROR && (bounces > 1 || !(lc_scene_lobes(scene) & (LC_MIRROR | LC_GLASS)));
-=======
-    /* Of mirror and dielectric the deep row tells what the direct one would; of the scale, path's and three_point's do. */
+    /* Of mirror and dielectric the deep row tells what the direct one would, and where nothing is specular path's does; of the scale, path's
+     * and three_point's do. */
     int is_scaled = strcmp(desc->name, "cornell_small") == 0 || strcmp(desc->name, "cornell_large") == 0;
-    int is_told = (bounces > 1 && !is_quick && estimator->lobes & LC_MIRROR) || (is_scaled && is_blind);
->>>>>>> main
+    int is_plain = !(lc_scene_lobes(scene) & (LC_MIRROR | LC_GLASS));
+    int is_told = (!is_quick && estimator->lobes & LC_MIRROR && (bounces > 1 || is_plain)) || (is_scaled && is_blind);
     if (estimator->lobes & lc_scene_lobes(scene) & LC_DIFFUSE && !is_told)
         status = add(self, claims, scene, estimator, find_hub(scene, estimator, direct_hubs, 1, 1), 1, !is_quick, err);
     int is_quick_deep = strcmp(desc->name, estimator->lobes & LC_MIRROR ? "bright_mirrors" : "bright_room") == 0 ||
