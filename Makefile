@@ -59,11 +59,11 @@ CLI  := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard src/cli/*.c))
 TEST := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard verify/tests/*.c))
 # The worker of the jail: the tracer and what it shares with verify/grade; no estimator, no check, no reader of files.
 WORKER := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard src/core/*.c verify/grade/worker/*.c) verify/grade/confine.c verify/grade/wire.c)
-# The proofs of the judge: programs of their own, two of whose files have a main.
-PROOF := $(patsubst %.c,$(BUILD)/obj/%.o,$(filter-out %/calibrate.c %/power.c,$(wildcard verify/proof/*.c)))
+# The proofs of the judge: programs of their own, three of whose files have a main.
+PROOF := $(patsubst %.c,$(BUILD)/obj/%.o,$(filter-out %/calibrate.c %/power.c %/kill.c,$(wildcard verify/proof/*.c)))
 
 .PHONY: all check verify verify-table full-table specular-proof pictures povray-reference mitsuba-table renderer-study lint asan-check \
-        calibrate power seeds few-seeds judge-mutants mutants bench needs fresh clean help
+        calibrate power seeds few-seeds judge-mutants mutants diagnosis-proof bench needs fresh clean help
 all: $(BUILD)/lightcheck $(BUILD)/lightcheck-worker $(BUILD)/obj/estimators/template.o ## build the program
 
 # A plug-in finds the functions of lightcheck.h in the program, and no others.
@@ -92,7 +92,7 @@ $(BUILD)/obj/texts.o: $(BUILD)/texts.c $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(CC) $(ALL_CFLAGS) -c -o $@ $<
 
-$(BUILD)/calibrate $(BUILD)/power: $(BUILD)/%: $(BUILD)/obj/verify/proof/%.o $(PROOF) $(LIB)
+$(BUILD)/calibrate $(BUILD)/power $(BUILD)/kill: $(BUILD)/%: $(BUILD)/obj/verify/proof/%.o $(PROOF) $(LIB)
 	$(CC) $(LDFLAGS) -o $@ $^ $(ALL_LIBS)
 
 $(BUILD)/obj/verify/tests/%.o: ALL_CFLAGS += $(CHECK_CFLAGS)
@@ -177,9 +177,12 @@ judge-mutants: ## wrong judges, each of which the tests must catch
 bench: all ## how fast the tracer is on this machine: paths a second of one core
 	@sh verify/tests/bench.sh $(BUILD)/lightcheck
 
-mutants: all ## which checks kill which mutants, and that right variants pass: results/mutants.md
-	@sh verify/tests/mutants.sh $(BUILD)/lightcheck quick > $(BUILD)/mutants.md; status=$$?; \
-	    cp $(BUILD)/mutants.md results/mutants.md; exit $$status
+mutants: $(BUILD)/kill ## which checks kill which mutants, and that right variants pass: results/mutants.md
+	$(BUILD)/kill -s $(BUILD)/kill.state -o results/mutants.md
+
+diagnosis-proof: all ## wrong files that diagnose has never seen: results/diagnosis.md
+	@bash verify/tests/diagnosis.sh $(BUILD)/lightcheck $(BUILD)/held_out > $(BUILD)/diagnosis.md; status=$$?; \
+	    cp $(BUILD)/diagnosis.md results/diagnosis.md; exit $$status
 
 needs: ## say what is missing, if anything is
 	@:

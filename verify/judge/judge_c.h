@@ -48,6 +48,14 @@ lc_status lc_session_difference(const lc_film **out, lc_session *session, const 
 lc_status lc_session_values(const lc_expected **out, lc_session *session, const lc_claim *claim, lc_error *err);
 /* Drops all films and values: the next scene needs none of them. */
 void lc_session_clear(lc_session *session);
+/* Drops the films of one estimator: what others are held against stays. */
+void lc_session_forget(lc_session *session, const lc_estimator *estimator);
+
+/* Appends what each check claims of the estimator over the scene, of all suites; adds 1 to *not_applicable where none does. */
+lc_status lc_plan_pair(lc_claims *claims, int *not_applicable, const lc_scene *scene, const lc_estimator *estimator,
+                       lc_error *err);
+/* Appends what each claims of the host. */
+lc_status lc_plan_host(lc_claims *claims, lc_error *err);
 
 /* 1 for the estimators that the program ships. */
 int lc_is_registered(const lc_estimator *estimator);
