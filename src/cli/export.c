@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,11 +6,14 @@
 #include "cli/commands.h"
 #include "io/exr.h"
 #include "io/outfile.h"
+#include "io/scene_write.h"
+#include "verify/checks/family.h"
 #include "verify/renderers/pov_sample.h"
 
 typedef struct export_arguments {
     const char *to, *mode, *size, *out, *image;
-    int samples, seed;
+    int samples;
+    uint64_t seed;
     lc_pov_options pov;
     lc_strings definitions;
 } export_arguments;
@@ -24,13 +26,18 @@ static lc_pov_mode mode_of(const char *name)
                                            : LC_POV_DIRECT;
 }
 
-static lc_status write_file(const char *path, const lc_scene_desc *desc, const lc_pov_options *options, lc_error *err)
+static int is_pov(const export_arguments *a) { return strcmp(a->to, "pov") == 0; }
+
+static lc_status write_file(const export_arguments *a, const lc_scene_desc *desc, lc_error *err)
 {
     lc_outfile *out;
-    lc_status status = lc_outfile_open(&out, path, err);
+    char default_out[128];
+    snprintf(default_out, sizeof default_out, "%s.%s", desc->name, a->to);
+    lc_status status = lc_outfile_open(&out, a->out ? a->out : default_out, err);
     if (status != LC_OK)
         return status;
-    status = lc_pov_export(lc_outfile_stream(out), desc, options, err);
+    status = is_pov(a) ? lc_pov_export(lc_outfile_stream(out), desc, &a->pov, err)
+                       : lc_scene_write(lc_outfile_stream(out), desc, err);
     if (status == LC_OK)
         return lc_outfile_commit(out, err);
     lc_outfile_abort(out);
@@ -45,7 +52,7 @@ static lc_status write_image(const export_arguments *a, const lc_scene_desc *des
     lc_film *film = NULL;
     lc_status status = rgb ? lc_film_create(&film, desc->width, desc->height, err) : lc_fail(err, LC_FAULT, "out of memory for an image");
     if (status == LC_OK)
-        status = lc_pov_sample(rgb, desc, a->pov.bounces, a->samples, (uint32_t)a->seed, err);
+        status = lc_pov_sample(rgb, desc, a->pov.bounces, a->samples, a->seed, err);
     for (size_t i = 0; status == LC_OK && i < count; ++i) {
         film->pixels[i].n = 1;
         for (size_t c = 0; c < 3; ++c)
@@ -63,20 +70,30 @@ static lc_status write_image(const export_arguments *a, const lc_scene_desc *des
     return status;
 }
 
+/* A file's description, or a drawn one. */
+static lc_status describe(lc_scene_desc *desc, const export_arguments *a, const char *name, lc_error *err)
+{
+    const lc_family *family = lc_family_find(name);
+    lc_scene *scene;
+    if (family && a->definitions.count > 0)
+        return lc_fail(err, LC_BAD_INPUT, "%s is drawn: it has no <default> to define; expected --seed", name);
+    if (family)
+        return lc_family_describe(desc, family, a->seed, err);
+    lc_status status = lc_cli_load_scene(&scene, name, &a->definitions, err);
+    if (status != LC_OK)
+        return status;
+    status = lc_scene_desc_copy(desc, lc_scene_description(scene), err);
+    lc_scene_free(scene);
+    return status;
+}
+
 static lc_status export_scene(void *user, const lc_strings *rest, lc_error *err)
 {
     export_arguments *a = user;
-    const char *scene_name = rest->items[0];
-    lc_scene *scene;
     lc_scene_desc desc;
-    char default_out[128];
     if (!a->to)
-        return lc_fail(err, LC_BAD_INPUT, "--to pov says for which program");
-    lc_status status = lc_cli_load_scene(&scene, scene_name, &a->definitions, err);
-    if (status != LC_OK)
-        return status;
-    status = lc_scene_desc_copy(&desc, lc_scene_description(scene), err);
-    lc_scene_free(scene);
+        return lc_fail(err, LC_BAD_INPUT, "--to pov or --to xml says for which program");
+    lc_status status = describe(&desc, a, rest->items[0], err);
     if (status != LC_OK)
         return status;
     a->pov.mode = mode_of(a->mode);
@@ -84,17 +101,17 @@ static lc_status export_scene(void *user, const lc_strings *rest, lc_error *err)
     if (a->pov.bounces < 0)
         a->pov.bounces = a->pov.mode == LC_POV_DIRECT     ? 1
                          : a->pov.mode == LC_POV_GATHERED ? 2
-                         : desc.max_bounces >= 0      ? desc.max_bounces
-                                                      : LC_DEFAULT_BOUNCES;
+                         : desc.max_bounces >= 0          ? desc.max_bounces
+                                                          : LC_DEFAULT_BOUNCES;
     if (a->size)
         status = lc_cli_read_pair(&desc.width, &desc.height, a->size, 'x', "--size", err);
     if (status == LC_OK && (desc.width < 1 || desc.height < 1 || desc.width > LC_MAX_SIZE || desc.height > LC_MAX_SIZE))
         status =
             lc_fail(err, LC_BAD_INPUT, "--size %dx%d: expected 1 to %d each", desc.width, desc.height, LC_MAX_SIZE);
-    snprintf(default_out, sizeof default_out, "%s.pov", desc.name);
-    const char *out = a->out ? a->out : default_out;
+    if (status == LC_OK && a->image && !is_pov(a))
+        status = lc_fail(err, LC_BAD_INPUT, "--image is rendered by POV-Ray: --to pov");
     if (status == LC_OK)
-        status = a->image ? write_image(a, &desc, err) : write_file(out, &desc, &a->pov, err);
+        status = a->image ? write_image(a, &desc, err) : write_file(a, &desc, err);
     lc_scene_desc_release(&desc);
     return status;
 }
@@ -105,8 +122,10 @@ static int run(const lc_command *self, int argc, char **argv)
     lc_pov_options_init(&a.pov);
     a.pov.bounces = -1;
     const lc_option options[] = {
-        {0, "to", LC_OPT_CHOICE, &a.to, "pov", "for which program; needed", 0, 0, "pov"},
-        {'o', "out", LC_OPT_STRING, &a.out, "FILE", "default SCENE.pov", 0, 0, NULL},
+        {0, "to", LC_OPT_CHOICE, &a.to, "pov|xml", "for POV-Ray, or as a scene's file (Mitsuba 3 reads it); needed", 0, 0,
+         "pov|xml"},
+        {'o', "out", LC_OPT_STRING, &a.out, "FILE", "default SCENE.pov or SCENE.xml", 0, 0, NULL},
+        {0, "seed", LC_OPT_UINT64, &a.seed, "N", "which scene of a family; of an image, where rays and points of lamps stand; default 1", 0, 0, NULL},
         {0, "mode", LC_OPT_CHOICE, &a.mode, "MODE",
          "direct (default): one diffuse reflection; radiosity: several; specular: mirrors and glass; gathered: one, off mirrors too",
          0, 0, "direct|radiosity|specular|gathered"},
@@ -122,21 +141,21 @@ static int run(const lc_command *self, int argc, char **argv)
         {0, "image", LC_OPT_STRING, &a.image, "FILE.exr",
          "runs POV-Ray and writes what it renders, all terms from L_0 on; mode and lamps are chosen for it", 0, 0, NULL},
         {'s', "samples", LC_OPT_INT, &a.samples, "N", "of an image: camera rays a pixel; default 16", 1, 1 << 20, NULL},
-        {0, "seed", LC_OPT_INT, &a.seed, "N", "of an image: where rays and lamps' points stand; default 1", 0, INT_MAX, NULL},
         {'D', "define", LC_OPT_LIST, &a.definitions, "NAME=VALUE", "value of a <default> of the scene", 0, 0, NULL},
         {0, NULL, LC_OPT_FLAG, NULL, NULL, NULL, 0, 0, NULL},
     };
     return lc_command_run(self, options, argc, argv, 1, 1,
-                          "expected one scene: a name (see `lightcheck list scenes`) or a path to an .xml file",
+                          "expected one scene: a name (see `lightcheck list scenes`), a path to an .xml file, or random_...",
                           export_scene, &a);
 }
 
 const lc_command lc_command_export = {
     "export",
-    "SCENE --to pov [-o FILE.pov] [options]",
-    "writes a scene for another renderer",
+    "SCENE --to pov|xml [-o FILE] [options]",
+    "writes a scene for another renderer, or one that was drawn",
     "What POV-Ray cannot express, or cannot do right, is refused with the reason (exit status 2); docs/povray.md has "
     "the\n"
-    "list. Render larger and average blocks for pixel means: POV-Ray samples pixel centres.\n",
+    "list. Render larger and average blocks for pixel means: POV-Ray samples pixel centres.\n"
+    "SCENE may be a family's, random_...: with --to xml a row of `verify --seed N` can be rendered, or replayed by sample.\n",
     run,
 };

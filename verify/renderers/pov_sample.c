@@ -45,7 +45,7 @@ static lc_status choose_mode(lc_pov_options *options, const lc_scene_desc *desc,
     return LC_OK;
 }
 
-lc_status lc_pov_sample(double *rgb, const lc_scene_desc *desc, int bounces, int samples, uint32_t seed, lc_error *err)
+lc_status lc_pov_sample(double *rgb, const lc_scene_desc *desc, int bounces, int samples, uint64_t seed, lc_error *err)
 {
     lc_pov_options options;
     lc_pov_run run;

@@ -13,6 +13,6 @@
 /* Radiance scattered at most `bounces` times, L_0 included, of `samples` rays a pixel, rounded up to a square and at most
  * 64: 3 numbers a pixel of desc->width x desc->height. LC_BAD_INPUT, with the reason, for what POV-Ray cannot say or
  * cannot do right; LC_FAULT where it fails. */
-lc_status lc_pov_sample(double *rgb, const lc_scene_desc *desc, int bounces, int samples, uint32_t seed, lc_error *err);
+lc_status lc_pov_sample(double *rgb, const lc_scene_desc *desc, int bounces, int samples, uint64_t seed, lc_error *err);
 
 #endif

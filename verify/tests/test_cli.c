@@ -277,6 +277,7 @@ START_TEST(bad_values_are_2_and_say_what_is_good)
     run_bad(BAD, "neither `random` nor a whole number", "verify", "--seed", "dice");
     run_bad(BAD, "unknown check 'nosuch'", "verify", "-c", "nosuch");
     run_bad(BAD, "'nosuch' is not in the suites", "verify", "--scene", "nosuch");
+    run_bad(BAD, "0 <= I < N", "verify", "--shard", "3/3");
     run_bad(BAD, "nothing to verify", "verify", "-c", "furnace", "--scene", "cornell");
 }
 END_TEST
@@ -322,6 +323,26 @@ START_TEST(lists_are_for_scripts)
             for (int k = 0; k < count; ++k)
                 ck_assert_str_eq(names[k], lc_estimators[k]->name);
     }
+}
+END_TEST
+
+/* What a check claims comes from somewhere. */
+START_TEST(checks_name_their_source)
+{
+    json_error_t why;
+    run(OK, "list", "checks", "--json");
+    json_t *array = json_loads(ran.out, 0, &why);
+    ck_assert_msg(json_is_array(array), "%s", why.text);
+    run(OK, "list", "checks");
+    for (size_t i = 0; i < json_array_size(array); ++i) {
+        const json_t *item = json_array_get(array, i);
+        const char *name = json_string_value(json_object_get(item, "name"));
+        const char *source = json_string_value(json_object_get(item, "source"));
+        ck_assert_msg(source && strlen(source) > 10, "%s has no source", name);
+        const char *line = strstr(ran.out, name), *at = line ? strstr(line, source) : NULL;
+        ck_assert_msg(at && at < line + strcspn(line, "\n"), "%s: its line does not name %s", name, source);
+    }
+    json_decref(array);
 }
 END_TEST
 
@@ -525,6 +546,39 @@ START_TEST(verify_has_formats)
     ck_assert_int_eq(access(in_folder("report/report.json"), R_OK), 0);
     ck_assert_int_eq(access(in_folder("report/report.xml"), R_OK), 0);
     run_bad(FAULT, "no/such", "verify", "-c", "emission", "--scene", "glass_sphere", "--report", in_folder("no/such"));
+    ck_assert_ptr_nonnull(strstr(ran.out, " PASS ")); /* the verdicts are not lost with the folder */
+}
+END_TEST
+
+/* What a FAIL looks like, and where that is said. */
+START_TEST(verify_draws_what_fails)
+{
+#define WRONG_PLANE "verify", "-c", "analytic", "-e", "light_no_pi", "--scene", "plane_rectangle"
+    const char *report = in_folder("report");
+    run(WRONG, WRONG_PLANE, "--report", report);
+    char line[256];
+    snprintf(line, sizeof line, "pictures: %s/001_analytic_plane_rectangle_light_no_pi_1-1.difference.png", report);
+    ck_assert_msg(strstr(ran.out, line) != NULL, "%s", ran.out);
+    json_t *root = json_load_file(in_folder("report/report.json"), 0, NULL);
+    json_t *pictures = json_object_get(json_array_get(json_object_get(root, "rows"), 0), "pictures");
+    const char *name;
+    json_t *path;
+    ck_assert_uint_eq(json_object_size(pictures), 6);
+    json_object_foreach(pictures, name, path)
+        ck_assert_msg(access(json_string_value(path), R_OK) == 0, "%s: %s", name, json_string_value(path));
+    lc_film *film;
+    ck_assert_int_eq(lc_exr_read(&film, json_string_value(json_object_get(pictures, "difference")), NULL), LC_OK);
+    ck_assert(film->pixels[0].c[0].mean > 0); /* pi times too much */
+    lc_film_free(film);
+    json_decref(root);
+
+    ck_assert(chmod(folder, 0755) == 0 && chmod(report, 0555) == 0);
+    run_list((const char *const[]){WRONG_PLANE, "--report", report, NULL}, 1);
+    ck_assert_int_eq(chmod(report, 0755), 0);
+    ck_assert_int_eq(ran.status, FAULT);
+    ck_assert_msg(strstr(ran.err, "Permission denied") && strstr(ran.err, "report/001_"), "%s", ran.err);
+    ck_assert_ptr_nonnull(strstr(ran.out, " FAIL "));
+    ck_assert_ptr_null(strstr(ran.out, "pictures:"));
 }
 END_TEST
 
@@ -583,6 +637,7 @@ Suite *lc_suite_cli(void)
     tcase_add_test(tc, bad_values_are_2_and_say_what_is_good);
     tcase_add_test(tc, unknown_names_list_the_known_ones);
     tcase_add_test(tc, lists_are_for_scripts);
+    tcase_add_test(tc, checks_name_their_source);
     tcase_add_test(tc, bad_files_are_named);
     tcase_add_test(tc, output_that_cannot_be_written_is_4);
     tcase_add_test(tc, a_full_or_closed_stdout_is_4);
@@ -592,6 +647,7 @@ Suite *lc_suite_cli(void)
     tcase_add_test(tc, sample_repeats_what_render_saw);
     tcase_add_test(tc, verify_says_pass_or_fail);
     tcase_add_test(tc, verify_has_formats);
+    tcase_add_test(tc, verify_draws_what_fails);
     suite_add_tcase(suite, tc);
     tc = tcase_create("signals");
     tcase_set_timeout(tc, 120);
