@@ -3,7 +3,6 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <time.h>
 
 #include "cli/commands.h"
 #include "io/scene_path.h"
@@ -29,19 +28,11 @@ static lc_status make_folder(const char *path, lc_error *err)
     return LC_OK;
 }
 
-static double now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 static lc_status render_case(const lc_pov_case *c, const reference_arguments *a, lc_error *err)
 {
     char path[LC_PATH_SIZE];
     lc_scene *scene = NULL;
-    lc_pov_image image = {0, 0, NULL, NULL};
-    double start = now();
+    lc_pov_image image = {.rgb = NULL, .error = NULL};
     lc_status status = lc_scene_locate(path, c->scene, err);
     if (status == LC_OK)
         status = lc_cli_load_scene(&scene, c->scene, NULL, err);
@@ -50,8 +41,8 @@ static lc_status render_case(const lc_pov_case *c, const reference_arguments *a,
     if (status == LC_OK)
         status = lc_pov_reference_write(a->folder, path, c, &image, err);
     if (status == LC_OK)
-        printf("%-20s %dx%d, %.1f%% of the pixels beyond the band of %g%%, %.1f s\n", c->scene, image.width,
-               image.height, 100 * lc_pov_share_left_out(&image, c->band), 100 * c->band, now() - start);
+        printf("%-20s %dx%d, %.1f%% of the pixels beyond the band of %g%%, %.1f s of CPU\n", c->scene, image.width,
+               image.height, 100 * lc_pov_share_left_out(&image, c->band), 100 * c->band, image.seconds);
     fflush(stdout);
     lc_pov_image_release(&image);
     lc_scene_free(scene);

@@ -11,6 +11,7 @@
 #include "estimators/registry.h"
 #include "io/scene_path.h"
 #include "verify/checks/checks.h"
+#include "verify/checks/family.h"
 #include "verify/renderers/pov_reference.h"
 
 /* A reference of which more is beyond the band says too little. */
@@ -88,7 +89,7 @@ static lc_status expect(lc_expected *out, lc_pov_mode mode, int live, const lc_s
     const lc_scene_desc *desc = lc_scene_description(scene);
     const lc_pov_case *c = find_case(desc->name, mode);
     char scene_file[LC_PATH_SIZE], folder[LC_PATH_SIZE + 32], version[128];
-    lc_pov_image image = {0, 0, NULL, NULL};
+    lc_pov_image image = {.rgb = NULL, .error = NULL};
     lc_status status;
     if (live && c->live && lc_pov_version(version, sizeof version, NULL) == LC_OK) {
         status = lc_pov_measure(&image, c, desc, threads, err);
@@ -114,13 +115,15 @@ static lc_status expect(lc_expected *out, lc_pov_mode mode, int live, const lc_s
 EXPECT(expect_direct, LC_POV_DIRECT, 0)
 EXPECT(expect_radiosity, LC_POV_RADIOSITY, 0)
 EXPECT(expect_specular, LC_POV_SPECULAR, 0)
+EXPECT(expect_gathered, LC_POV_GATHERED, 0)
 EXPECT(expect_direct_live, LC_POV_DIRECT, 1)
 EXPECT(expect_radiosity_live, LC_POV_RADIOSITY, 1)
 EXPECT(expect_specular_live, LC_POV_SPECULAR, 1)
+EXPECT(expect_gathered_live, LC_POV_GATHERED, 1)
 
 /* [live][lc_pov_mode] */
-static lc_expect_fn *const expectations[2][3] = {{expect_direct, expect_radiosity, expect_specular},
-                                                 {expect_direct_live, expect_radiosity_live, expect_specular_live}};
+static lc_expect_fn *const expectations[2][4] = {{expect_direct, expect_radiosity, expect_specular, expect_gathered},
+                                                 {expect_direct_live, expect_radiosity_live, expect_specular_live, expect_gathered_live}};
 
 static int is_registered(const lc_estimator *estimator)
 {
@@ -172,6 +175,10 @@ int lc_povray_excuse(lc_error *why, const lc_scene *scene)
     else if (lc_scene_emitters(scene) == LC_SKY)
         options.mode = LC_POV_RADIOSITY;
     options.emission = options.mode == LC_POV_SPECULAR;
+    if (lc_family_find(desc->name)) {
+        snprintf(why->text, sizeof why->text, "drawn anew for each seed, so that no image of POV-Ray's can be kept");
+        return 1;
+    }
     FILE *memory = open_memstream(&text, &length);
     if (!memory || lc_pov_export(memory, desc, &options, why) == LC_OK)
         snprintf(why->text, sizeof why->text, "no image of POV-Ray's is kept of it");

@@ -9,13 +9,13 @@
 #include "verify/renderers/pov_export_c.h"
 
 const char *const lc_pov_kind_names[] = {"rectangle", "disk", "cube", "sphere"};
-static const char *const mode_names[] = {"direct", "radiosity", "specular"}; /* in the order of lc_pov_mode */
+static const char *const mode_names[] = {"direct", "radiosity", "specular", "gathered"}; /* in the order of lc_pov_mode */
 
 int lc_pov_is_black(lc_rgb c) { return c.r == 0 && c.g == 0 && c.b == 0; }
 
 void lc_pov_options_init(lc_pov_options *options)
 {
-    const lc_pov_options defaults = {LC_POV_DIRECT, 16, 0, 1, 400};
+    const lc_pov_options defaults = {LC_POV_DIRECT, 16, 0, 1, 400, {0, 0}, 0};
     *options = defaults;
 }
 
@@ -96,13 +96,14 @@ static lc_status check_options(const lc_pov_options *o, lc_error *err)
 {
     if (o->area_samples < 2 || o->area_samples > 256)
         return lc_fail(err, LC_BAD_INPUT, "%d points along a lamp's side, expected 2 to 256", o->area_samples);
-    int least = o->mode == LC_POV_SPECULAR ? 0 : 1, most = o->mode == LC_POV_SPECULAR    ? 250
+    int least = o->mode == LC_POV_SPECULAR || o->mode == LC_POV_DIRECT ? 0 : 1, most = o->mode == LC_POV_SPECULAR    ? 250
                                                            : o->mode == LC_POV_RADIOSITY ? 20
+                                                           : o->mode == LC_POV_GATHERED  ? 2
                                                                                          : 1;
     if (o->bounces < least || o->bounces > most)
         return lc_fail(err, LC_BAD_INPUT, "%d bounces, expected %d to %d with mode %s", o->bounces, least, most,
                        mode_names[o->mode]);
-    if (o->mode == LC_POV_RADIOSITY && (o->count < 1 || o->count > 1600))
+    if ((o->mode == LC_POV_RADIOSITY || o->mode == LC_POV_GATHERED) && (o->count < 1 || o->count > 1600))
         return lc_fail(err, LC_BAD_INPUT, "%d rays of a gathering, expected 1 to 1600", o->count);
     return LC_OK;
 }
@@ -137,6 +138,12 @@ static void write_head(const lc_pov_writer *w)
         w->desc->name, w->desc->name, 8 * w->desc->width, 8 * w->desc->height, w->unit);
 }
 
+/* Lamps stand for light sources; elsewhere they glow. */
+static int lights_are_sources(const lc_pov_options *o)
+{
+    return (o->mode == LC_POV_DIRECT && o->bounces > 0) || o->mode == LC_POV_RADIOSITY;
+}
+
 static void write_global(const lc_pov_writer *w)
 {
     const lc_pov_options *o = w->options;
@@ -149,17 +156,20 @@ static void write_global(const lc_pov_writer *w)
             "    adc_bailout 1e-6 // a path's weight below which it ends\n",
             o->mode == LC_POV_SPECULAR ? o->bounces + 1 : 5);
     /* Light gathered by a ray is what the surface there reflects: one bounce is gathered with the sky alone. */
-    int depth = w->desc->has_sky ? o->bounces : o->bounces - 1;
-    if (o->mode == LC_POV_RADIOSITY && depth > 0)
+    int depth = o->mode == LC_POV_GATHERED    ? 1
+                : o->mode != LC_POV_RADIOSITY ? 0
+                : w->desc->has_sky            ? o->bounces
+                                              : o->bounces - 1;
+    if (depth > 0)
         fprintf(w->out,
                 "    radiosity {\n"
-                "        recursion_limit %d // diffuse bounces on top of the light sources'\n"
+                "        recursion_limit %d // diffuse bounces %s\n"
                 "        count %d\n"
                 "        error_bound 0.1 low_error_factor 0.5 nearest_count 10 minimum_reuse 0.002\n"
                 "        pretrace_start 0.08 pretrace_end 0.005\n"
                 "        gray_threshold 0 brightness 1 adc_bailout 1e-4 always_sample on normal off\n"
                 "    }\n",
-                depth, o->count);
+                depth, lights_are_sources(o) ? "on top of the light sources'" : "in all: nothing but what glows gives light", o->count);
     fprintf(w->out, "}\n#default { finish { ambient 0 diffuse 0 emission 0 } }\n\n");
 }
 
@@ -185,9 +195,11 @@ static void write_camera(const lc_pov_writer *w)
             "handedness\ncamera {\n    perspective\n",
             atan(x) * 360 / LC_PI, atan(y) * 360 / LC_PI);
     write_vector(w, "location", lc_scale(w->unit, lc_affine_point(&camera.to_world, lc_vec(0, 0, 0))));
-    write_vector(w, "right", lc_scale(-2 * x, left));
-    write_vector(w, "up", lc_scale(2 * y, up));
-    write_vector(w, "direction", axis);
+    lc_vec3 across = lc_scale(-2 * x, left), high = lc_scale(2 * y, up);
+    write_vector(w, "right", across);
+    write_vector(w, "up", high);
+    write_vector(w, "direction", lc_add(axis, lc_sub(lc_scale(w->options->shift[0] / d->width, across),
+                                                     lc_scale(w->options->shift[1] / d->height, high))));
     fprintf(w->out, "}\n\n");
 }
 
@@ -232,7 +244,7 @@ lc_status lc_pov_export(FILE *out, const lc_scene_desc *desc, const lc_pov_optio
     write_camera(&w);
     write_sky(&w);
     lc_pov_write_shapes(&w);
-    if (options->mode != LC_POV_SPECULAR)
+    if (lights_are_sources(options))
         status = lc_pov_write_lights(&w, err);
     if (status != LC_OK)
         return status;

@@ -93,6 +93,23 @@ static void write_macro(const lc_pov_writer *w)
             "    }\n"
             "#end\n\n",
             LC_POV_LIFT, LC_POV_FADE);
+    if (w->options->jitter)
+        fprintf(w->out, "#declare Random = seed(%lu);\n\n", (unsigned long)w->options->jitter);
+}
+
+/* Points drawn at A and B in [0, 1), two in each of m x n cells, the second opposite the first: each is anywhere in its cell with
+ * equal probability, so that no error is the same for all seeds, and what is linear in a cell cancels. */
+static void write_cells_of_points(const lc_pov_writer *w, int m, int n, const char *at, const char *normal, const char *colour)
+{
+    fprintf(w->out,
+            "#for (I, 0, %d)\n    #for (J, 0, %d)\n"
+            "        #declare U0 = rand(Random);\n        #declare V0 = rand(Random);\n"
+            "        #for (K, 0, 1)\n"
+            "            #declare A = (I + abs(K - U0)) / %d;\n"
+            "            #declare B = (J + abs(K - V0)) / %d;\n"
+            "            Piece(%s, %s, %s / %d)\n"
+            "        #end\n    #end\n#end\n\n",
+            m - 1, n - 1, m, n, at, normal, colour, 2 * m * n);
 }
 
 /* One rectangle o + [-1, 1] u + [-1, 1] v; `out` lies on the side of the normal of the shape that is not flipped. */
@@ -108,6 +125,10 @@ static lc_status write_face(const lc_pov_writer *w, const lc_shape_desc *shape, 
     declare_vector(w, "V", lc_scale(w->unit, v));
     declare_vector(w, "N", n);
     declare_color(w, radiance, 4 * lc_length(cross));
+    if (w->options->jitter) {
+        write_cells_of_points(w, nu, nv, "O + (2 * A - 1) * U + (2 * B - 1) * V", "N", "C");
+        return LC_OK;
+    }
     if (declare_gauss(w, "X", "XW", nu, -1) != LC_OK || declare_gauss(w, "Y", "YW", nv, -1) != LC_OK)
         return LC_FAULT;
     fprintf(w->out,
@@ -196,6 +217,12 @@ static lc_status write_disk(const lc_pov_writer *w, const lc_shape_desc *shape)
     declare_vector(w, "V", lc_scale(w->unit, v));
     declare_vector(w, "N", n);
     declare_color(w, shape->radiance.color[0], LC_PI * lc_length(cross) / around);
+    if (w->options->jitter) {
+        char colour[32];
+        snprintf(colour, sizeof colour, "C * %d", around);
+        write_cells_of_points(w, rings, around, "O + sqrt(A) * (cos(2 * pi * B) * U + sin(2 * pi * B) * V)", "N", colour);
+        return LC_OK;
+    }
     if (declare_gauss(w, "R", "RW", rings, 0) != LC_OK) /* of the squared radius */
         return LC_FAULT;
     fprintf(w->out,
@@ -214,6 +241,14 @@ static lc_status write_sphere(const lc_pov_writer *w, const lc_shape_desc *shape
     int across = points_along(w, 2 * radius), count = 3 * across * across;
     declare_vector(w, "O", lc_scale(w->unit, column(shape, 3)));
     declare_color(w, shape->radiance.color[0], 4 * LC_PI * radius * radius / count);
+    if (w->options->jitter) {
+        char at[64], colour[32];
+        snprintf(at, sizeof at, "O + %.15g * Way(A, B)", w->unit * radius);
+        snprintf(colour, sizeof colour, "C * %d", count);
+        fprintf(w->out, "#macro Way(A, B) <2 * sqrt(A - A * A) * cos(2 * pi * B), 2 * sqrt(A - A * A) * sin(2 * pi * B), 1 - 2 * A> #end\n");
+        write_cells_of_points(w, across, 3 * across, at, shape->flip_normals ? "-Way(A, B)" : "Way(A, B)", colour);
+        return LC_OK;
+    }
     fprintf(w->out,
             "#for (I, 0, %d)\n"
             "    #declare Z = 1 - (2 * I + 1) / %d;\n"
@@ -261,6 +296,8 @@ lc_status lc_pov_check_lights(const lc_pov_writer *w, lc_error *err)
     int lights = d->point_count + d->directional_count;
     if (w->options->mode == LC_POV_SPECULAR)
         return LC_OK; /* there they light nothing */
+    if (w->options->mode == LC_POV_GATHERED && lights)
+        return lc_fail(err, LC_BAD_INPUT, "%s: no ray meets a point or directional light: mode gathered is for lamps", d->name);
     for (int i = 0; i < d->shape_count; ++i) {
         const lc_texture *t = &d->shapes[i].radiance;
         lights += is_lamp(&d->shapes[i]);

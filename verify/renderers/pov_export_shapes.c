@@ -76,6 +76,7 @@ static lc_status check_shape(const lc_pov_writer *w, const lc_shape_desc *shape,
         return refuse(w, shape, "POV-Ray's reflections are sharp: it has no rough mirror", err);
     /* Rays that gather the light of a sky are reflected like any others; one bounce leaves nothing to count. */
     int gathers_all = w->options->mode == LC_POV_RADIOSITY && w->options->bounces == 1 && is_lit_by_sky_alone(w->desc);
+    gathers_all |= w->options->mode == LC_POV_GATHERED;
     if ((glass || (specular && !gathers_all)) && w->options->mode != LC_POV_SPECULAR)
         return refuse(w, shape,
                       "POV-Ray's lights reach no surface off a mirror or through glass: mode specular, for scenes "
@@ -86,7 +87,8 @@ static lc_status check_shape(const lc_pov_writer *w, const lc_shape_desc *shape,
                       err);
     if (checkered && shape->kind != LC_RECTANGLE)
         return refuse(w, shape, "a checkerboard has POV-Ray's pigment on rectangles only", err);
-    if (shape->emits && shape->radiance.is_checkerboard && (shape->kind != LC_RECTANGLE || w->options->emission))
+    if (shape->emits && shape->radiance.is_checkerboard &&
+        (shape->kind != LC_RECTANGLE || w->options->emission || w->options->mode == LC_POV_GATHERED))
         return refuse(w, shape, "a glowing checkerboard is many lamps: on rectangles only, and not seen by the camera", err);
     return glass ? check_glass(w, shape, err) : LC_OK;
 }
@@ -218,7 +220,10 @@ static void write_shape(const lc_pov_writer *w, const lc_shape_desc *shape)
     fprintf(w->out, "// %s of line %d%s%s%s%s\n", lc_pov_kind_names[shape->kind], shape->line,
             m->id[0] ? ", material " : "", m->id, shape->flip_normals ? ", normals flipped" : "",
             glows ? ", a lamp" : "");
-    if (!glows || !w->options->emission) {
+    if (glows && w->options->mode == LC_POV_GATHERED && !w->options->emission) { /* the camera meets a dark twin */
+        write_body(w, shape, shape->radiance.color[0], "no_image");
+        write_body(w, shape, lc_black(), "no_reflection no_radiosity no_shadow");
+    } else if (!glows || !w->options->emission) {
         write_body(w, shape, lc_black(), NULL);
     } else if (w->options->mode != LC_POV_RADIOSITY) {
         write_body(w, shape, shape->radiance.color[0], NULL);

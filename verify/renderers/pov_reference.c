@@ -8,13 +8,14 @@
 #include <jansson.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 
 #include "io/exr.h"
 #include "io/outfile.h"
 
 enum { PATH_SIZE = 4096 };
 
-static const char *const mode_names[] = {"direct", "radiosity", "specular"}; /* in the order of lc_pov_mode */
+static const char *const mode_names[] = {"direct", "radiosity", "specular", "gathered"}; /* in the order of lc_pov_mode */
 
 #define DIRECT "POV-Ray, lamps as quadratures; band 0.2% of the mean from its convergence, pixels beyond it left out"
 #define DELTA "POV-Ray; band 0.2% of the mean from its convergence, pixels beyond it left out"
@@ -22,6 +23,8 @@ static const char *const mode_names[] = {"direct", "radiosity", "specular"}; /* 
 #define CHAIN "POV-Ray, mirrors and glass; band 0.2% of the mean from its convergence, pixels beyond it left out"
 #define DARK "POV-Ray; black exactly"
 #define SKY "POV-Ray's radiosity, which gathers a sky; band 0.2% of the mean for tiles of 8 x 8 pixels"
+#define GLOWING "POV-Ray's radiosity, which gathers what glows, off mirrors too; band 5% of the mean for tiles of 8 x 8 pixels"
+#define SKY_CUT "POV-Ray's radiosity, which gathers a sky that a wall cuts; band 1.5% of the mean for tiles of 8 x 8 pixels"
 #define GATHERED "POV-Ray's radiosity on top of its direct light; band 1.5% of the mean for tiles of 8 x 8 pixels"
 
 /* Points and samples are chosen so that few pixels are beyond the band; cost grows as the square of each. */
@@ -53,6 +56,12 @@ const lc_pov_case lc_pov_cases[] = {
     {"glass_slab", LC_POV_SPECULAR, 2, 8, 1, 0, 8, 0.002, 0, "dielectric", CHAIN},
     {"glass_sphere", LC_POV_SPECULAR, 2, 8, 1, 0, 2, 0.002, 0, "dielectric", CHAIN},
     {"bright_room", LC_POV_RADIOSITY, 12, 4, 100, 1, 3, 0.015, 0, "path", GATHERED},
+    {"two_patches", LC_POV_DIRECT, 24, 8, 1, 1, 1, 0.002, 0, "light_direct", DIRECT},
+    {"two_surfaces", LC_POV_RADIOSITY, 12, 8, 400, 1, 2, 0.015, 0, "path", GATHERED},
+    {"sky_wall", LC_POV_RADIOSITY, 2, 4, 400, 1, 1, 0.015, 0, "hemisphere_direct", SKY_CUT},
+    {"enclosure", LC_POV_DIRECT, 32, 4, 1, 1, 1, 0.002, 0, "light_direct", DIRECT},
+    {"enclosure_point", LC_POV_DIRECT, 2, 8, 1, 1, 1, 0.002, 0, "light_direct", DELTA},
+    {"mirror_wall", LC_POV_GATHERED, 2, 4, 1600, 1, 2, 0.05, 0, "dielectric", GLOWING},
     {NULL, LC_POV_DIRECT, 0, 0, 0, 0, 0, 0, 0, NULL, NULL},
 };
 
@@ -68,6 +77,7 @@ static lc_status make_image(lc_pov_image *out, int width, int height, lc_error *
     size_t count = (size_t)width * (size_t)height;
     out->width = width;
     out->height = height;
+    out->seconds = out->change = 0;
     out->rgb = calloc(3 * count, sizeof *out->rgb);
     out->error = calloc(count, sizeof *out->error);
     if (out->rgb && out->error)
@@ -130,6 +140,16 @@ static double difference_of_tile(const lc_pov_image *fine, const double *coarse,
     return fmax(fabs(sum[0]), fmax(fabs(sum[1]), fabs(sum[2]))) / count;
 }
 
+/* Of processors, by the programs that were run. */
+static double child_seconds(void)
+{
+    struct rusage used;
+    getrusage(RUSAGE_CHILDREN, &used);
+    return (double)(used.ru_utime.tv_sec + used.ru_stime.tv_sec) + 1e-6 * (double)(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
+}
+
+static int gathers(lc_pov_mode mode) { return mode == LC_POV_RADIOSITY || mode == LC_POV_GATHERED; }
+
 static void find_errors(lc_pov_image *fine, const double *coarse, lc_pov_mode mode)
 {
     for (int y = 0; y < fine->height; ++y)
@@ -137,9 +157,14 @@ static void find_errors(lc_pov_image *fine, const double *coarse, lc_pov_mode mo
             size_t at = (size_t)y * (size_t)fine->width + (size_t)x;
             const double *rgb = &fine->rgb[3 * at];
             fine->error[at] = 0x1p-11 * fmax(rgb[0], fmax(rgb[1], rgb[2]));
-            fine->error[at] += mode == LC_POV_RADIOSITY ? difference_of_tile(fine, coarse, x, y)
-                                                        : difference_around(fine, coarse, x, y);
+            fine->error[at] += gathers(mode) ? difference_of_tile(fine, coarse, x, y) : difference_around(fine, coarse, x, y);
         }
+    double sum = 0, before = 0;
+    for (size_t i = 0; i < 3 * (size_t)fine->width * (size_t)fine->height; ++i) {
+        sum += fine->rgb[i];
+        before += coarse[i];
+    }
+    fine->change = sum > 0 ? before / sum - 1 : 0;
 }
 
 static lc_status render_case(double *rgb, const lc_pov_case *c, int divisor, const lc_scene_desc *desc, int threads,
@@ -155,7 +180,7 @@ static lc_status render_case(double *rgb, const lc_pov_case *c, int divisor, con
     options.area_samples = c->area_samples / divisor < 2 ? 2 : c->area_samples / divisor;
     options.count = c->count / divisor < 1 ? 1 : c->count / divisor;
     run.supersampling = c->supersampling / divisor < 1 ? 1 : c->supersampling / divisor;
-    run.threads = c->mode == LC_POV_RADIOSITY ? 1 : threads; /* what is gathered depends on the order of the pixels */
+    run.threads = gathers(c->mode) ? 1 : threads; /* what is gathered depends on the order of the pixels */
     run.seconds = 3600;
     return lc_pov_render(rgb, desc, &options, &run, err);
 }
@@ -169,6 +194,7 @@ lc_status lc_pov_measure(lc_pov_image *out, const lc_pov_case *c, const lc_scene
         free(coarse);
         return status;
     }
+    double start = child_seconds();
     status = render_case(coarse, c, 2, desc, threads, err);
     if (status == LC_OK)
         status = render_case(out->rgb, c, 1, desc, threads, err);
@@ -176,6 +202,7 @@ lc_status lc_pov_measure(lc_pov_image *out, const lc_pov_case *c, const lc_scene
         find_errors(out, coarse, c->mode);
     else
         lc_pov_image_release(out);
+    out->seconds = child_seconds() - start;
     free(coarse);
     return status;
 }
@@ -272,11 +299,11 @@ lc_status lc_pov_reference_write(const char *folder, const char *scene_file, con
     snprintf(command, sizeof command, "povray +Iscene.pov +Oscene.exr +FE +W%d +H%d -A -D -P",
              image->width * c->supersampling, image->height * c->supersampling);
     json_t *json =
-        json_pack("{s:s, s:s, s:s, s:s, s:s, s:s, s:i, s:i, s:i, s:i, s:i, s:f, s:f, s:f}", "renderer", "POV-Ray",
+        json_pack("{s:s, s:s, s:s, s:s, s:s, s:s, s:i, s:i, s:i, s:i, s:i, s:f, s:f, s:f, s:f, s:f}", "renderer", "POV-Ray",
                   "version", version, "command", command, "scene", c->scene, "scene_fnv1a64", hash, "mode",
                   mode_names[c->mode], "area_samples", c->area_samples, "supersampling", c->supersampling, "count",
                   c->count, "min_bounces", c->min_bounces, "max_bounces", c->max_bounces, "band", c->band, "mean",
-                  image_mean(image), "left_out", lc_pov_share_left_out(image, c->band));
+                  image_mean(image), "left_out", lc_pov_share_left_out(image, c->band), "change", image->change, "cpu_seconds", image->seconds);
     name_file(path, folder, c, "json");
     status = write_json(path, json, err);
     json_decref(json);

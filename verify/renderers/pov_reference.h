@@ -12,7 +12,7 @@
 typedef struct lc_pov_case {
     const char *scene;
     lc_pov_mode mode;
-    int area_samples, supersampling, count; /* as in lc_pov_options and lc_pov_run; count: mode radiosity */
+    int area_samples, supersampling, count; /* as in lc_pov_options and lc_pov_run; count: rays of a gathering */
     int min_bounces, max_bounces;           /* 0: what the camera sees glow is in it */
     double band;           /* relative to the image's mean: pixels whose error may be larger are left out */
     int live;              /* 1: cheap enough to be rendered in each run where POV-Ray is installed */
@@ -26,6 +26,8 @@ extern const lc_pov_case lc_pov_cases[]; /* ends with scene = NULL */
 typedef struct lc_pov_image {
     int width, height;
     double *rgb, *error;
+    double change;  /* mean of the image rendered half as finely over this one's, less 1 */
+    double seconds; /* of processors, for both; 0 for an image that was read */
 } lc_pov_image;
 
 void lc_pov_image_release(lc_pov_image *image);
@@ -33,7 +35,7 @@ void lc_pov_image_release(lc_pov_image *image);
 /* Renders the case twice, as finely as it says and half as finely in every respect at once (points of a lamp,
  * supersampling, rays of a gathering). The error of a pixel is the largest difference of the two within one pixel
  * around it, plus the rounding of half floats, 2^-11 of its value: both errors fall at least as fast as the spacing, so
- * that the finer image is nearer to the truth than to the coarser one. Mode radiosity: the difference of the means over
+ * that the finer image is nearer to the truth than to the coarser one. Where light is gathered: the difference of the means over
  * the pixel's tile of 8 x 8, since gathering is noisy from pixel to pixel. */
 lc_status lc_pov_measure(lc_pov_image *out, const lc_pov_case *c, const lc_scene_desc *desc, int threads,
                          lc_error *err);
@@ -43,8 +45,8 @@ lc_status lc_pov_measure(lc_pov_image *out, const lc_pov_case *c, const lc_scene
 uint64_t lc_pov_hash(const void *bytes, size_t length);
 
 /* Writes FOLDER/NAME.exr (R G B; the error as standard deviation, squared, in variance.*) and NAME.json (version,
- * options, hash of the scene's file, convergence). NAME is "SCENE.pov", with ".radiosity" or ".specular" before ".pov"
- * for those modes. `scene_file` is hashed. */
+ * options, hash of the scene's file, convergence, time). NAME is "SCENE.pov", with ".radiosity" or another mode's name before
+ * ".pov" unless that is direct. `scene_file` is hashed. */
 lc_status lc_pov_reference_write(const char *folder, const char *scene_file, const lc_pov_case *c,
                                  const lc_pov_image *image, lc_error *err);
 /* Reads it back. LC_WRONG, with the reason, when it is missing, was rendered from another scene's file, or as another

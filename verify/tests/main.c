@@ -11,7 +11,7 @@ static Suite *(*const suites[])(void) = {
     lc_suite_sampler,  lc_suite_warp,           lc_suite_camera,        lc_suite_accel,
     lc_suite_surface,  lc_suite_render,         lc_suite_bsdf,          lc_suite_energy,
     lc_suite_cli,      lc_suite_report,         lc_suite_estimators,    lc_suite_judge_mutants,
-    lc_suite_povray,   lc_suite_verify,         lc_suite_mutants,       lc_suite_sensitivity,
+    lc_suite_pov_sample, lc_suite_povray,   lc_suite_verify,         lc_suite_mutants,       lc_suite_sensitivity,
     lc_suite_effects,  lc_suite_motion,         lc_suite_nee,           lc_suite_metamorphic,
     lc_suite_family,   lc_suite_convergence,    lc_suite_lecture,
     lc_suite_diagnose, lc_suite_scene_write,    lc_suite_adapter,

@@ -111,6 +111,8 @@ static const struct {
      LC_POV_DIRECT, "rectangles only"},
     {HEAD "<shape type=\"rectangle\"><emitter type=\"area\">" CHECKER("radiance") "</emitter></shape></scene>",
      LC_POV_DIRECT, "many lamps"},
+    {HEAD "<emitter type=\"point\"/></scene>", LC_POV_GATHERED, "no ray meets"},
+    {HEAD "<shape type=\"sphere\">" GLASS "</shape></scene>", LC_POV_GATHERED, "through glass"},
 };
 
 START_TEST(what_cannot_be_expressed_is_refused_with_the_reason)
@@ -377,7 +379,7 @@ START_TEST(references_of_another_scene_or_case_are_refused)
 {
     char folder[] = "/tmp/lightcheck-test-XXXXXX", scene[64], path[96];
     double rgb[12] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}, error[4] = {0.25, 0.5, 1, 0.125};
-    const lc_pov_image image = {2, 2, rgb, error};
+    const lc_pov_image image = {2, 2, rgb, error, 0.01, 3};
     lc_pov_image back;
     lc_pov_case c = lc_pov_cases[0];
     if (!has_povray())
@@ -468,6 +470,13 @@ static void brighten_room(lc_scene_desc *desc)
         desc->shapes[i].radiance.color[0] = lc_rgb_scale(1.05, desc->shapes[i].radiance.color[0]);
 }
 
+/* Beyond the margin of lamps that are gathered, which is 10%. */
+static void brighten_gathered(lc_scene_desc *desc)
+{
+    for (int i = 0; i < desc->shape_count; ++i)
+        desc->shapes[i].radiance.color[0] = lc_rgb_scale(1.15, desc->shapes[i].radiance.color[0]);
+}
+
 static const struct {
     const char *scene, *estimator;
     void (*alter)(lc_scene_desc *desc);
@@ -488,6 +497,8 @@ static const struct {
     {"textured_lamp", "light_direct", brighten_lamp, LC_ROW_FAIL},
     {"sky", "hemisphere_direct", brighten_sky, LC_ROW_FAIL},
     {"bright_room", "path", brighten_room, LC_ROW_FAIL},
+    {"mirror_wall", "dielectric", NULL, LC_ROW_PASS},
+    {"mirror_wall", "dielectric", brighten_gathered, LC_ROW_FAIL},
 };
 
 static const lc_estimator *find_estimator(const char *name)

@@ -40,6 +40,7 @@ Suite *lc_suite_report(void);
 Suite *lc_suite_estimators(void);
 Suite *lc_suite_judge_mutants(void);
 Suite *lc_suite_povray(void);
+Suite *lc_suite_pov_sample(void);
 Suite *lc_suite_verify(void);
 Suite *lc_suite_mutants(void);
 Suite *lc_suite_plugin(void);
