@@ -48,6 +48,14 @@ lc_status lc_session_difference(const lc_film **out, lc_session *session, const 
 lc_status lc_session_values(const lc_expected **out, lc_session *session, const lc_claim *claim, lc_error *err);
 /* Drops all films and values: the next scene needs none of them. */
 void lc_session_clear(lc_session *session);
+/* Drops the films of one estimator: what others are held against stays. */
+void lc_session_forget(lc_session *session, const lc_estimator *estimator);
+
+/* Appends what each check claims of the estimator over the scene, of all suites; adds 1 to *not_applicable where none does. */
+lc_status lc_plan_pair(lc_claims *claims, int *not_applicable, const lc_scene *scene, const lc_estimator *estimator,
+                       lc_error *err);
+/* Appends what each claims of the host. */
+lc_status lc_plan_host(lc_claims *claims, lc_error *err);
 
 /* 1 for the estimators that the program ships. */
 int lc_is_registered(const lc_estimator *estimator);
@@ -55,6 +63,9 @@ int lc_is_registered(const lc_estimator *estimator);
 /* The stream of an estimator in this run. One that is not in the registry never shares a stream with one that is, even under the same name. */
 uint32_t lc_session_arm(const lc_estimator *estimator);
 
+/* Judges the claims, scenes at the same time, and appends their rows to the report in this order; each thread has a session of its own,
+ * that begins as `model`, which has no films yet. */
+lc_status lc_judge_all(lc_report *report, const lc_session *model, const lc_claim *const *claims, int count, lc_error *err);
 /* Decides one claim and fills the row. */
 lc_status lc_judge_claim(lc_row *row, lc_session *session, const lc_claim *claim, lc_error *err);
 /* The same for a paired claim, in paired.c; room for the differences of one channel in `field`. */

@@ -158,6 +158,17 @@ void lc_session_clear(lc_session *session)
     session->film_count = session->value_count = 0;
 }
 
+void lc_session_forget(lc_session *session, const lc_estimator *estimator)
+{
+    int kept = 0;
+    for (int i = 0; i < session->film_count; ++i)
+        if (session->films[i].estimator == estimator)
+            lc_film_free(session->films[i].film);
+        else
+            session->films[kept++] = session->films[i];
+    session->film_count = kept;
+}
+
 double lc_film_noise(const lc_film *film)
 {
     double most = 0;

@@ -34,8 +34,8 @@ lc_status lc_suite_scene(lc_scene **out, const char *name, uint64_t seed, lc_loa
     return status;
 }
 
-static lc_status plan_pair(lc_claims *claims, int *not_applicable, const lc_scene *scene, const lc_estimator *estimator,
-                           lc_error *err)
+lc_status lc_plan_pair(lc_claims *claims, int *not_applicable, const lc_scene *scene, const lc_estimator *estimator,
+                       lc_error *err)
 {
     int before = claims->count;
     for (const lc_check *const *c = lc_checks; *c; ++c) {
@@ -51,12 +51,12 @@ static lc_status plan_scene(lc_claims *claims, int *not_applicable, const lc_ver
                             lc_error *err)
 {
     for (const lc_estimator *const *e = lc_estimators; *e; ++e) {
-        lc_status status = plan_pair(claims, not_applicable, scene, *e, err);
+        lc_status status = lc_plan_pair(claims, not_applicable, scene, *e, err);
         if (status != LC_OK)
             return status;
     }
     if (o->estimator && !lc_is_registered(o->estimator))
-        return plan_pair(claims, not_applicable, scene, o->estimator, err);
+        return lc_plan_pair(claims, not_applicable, scene, o->estimator, err);
     return LC_OK;
 }
 
@@ -76,7 +76,7 @@ static void keep_suite(lc_claims *claims, const lc_suite *suite, const lc_adapte
     claims->count = kept;
 }
 
-static lc_status plan_host(lc_claims *claims, lc_error *err)
+lc_status lc_plan_host(lc_claims *claims, lc_error *err)
 {
     lc_status status = LC_OK;
     for (const lc_check *const *c = lc_checks; *c && status == LC_OK; ++c)
@@ -105,48 +105,24 @@ static int is_selected(const lc_verify_options *o, const lc_claim *claim)
            (!o->scene || strcmp(o->scene, lc_scene_description(claim->scene)->name) == 0);
 }
 
-/* Keeps what is to be judged now; how many rows the whole run has is known already. */
-static void select_claims(lc_claims *claims, const lc_verify_options *o)
+/* The claims that were asked for, in their order; a shard is every so many scenes. How many rows the whole run has is known already. */
+static lc_status judge_selected(lc_report *report, const lc_session *session, const lc_claims *claims, lc_error *err)
 {
+    const lc_verify_options *o = session->options;
+    const lc_claim **selected = calloc((size_t)claims->count + 1, sizeof *selected);
     const lc_scene *scene = NULL;
-    int kept = 0, nth = 0;
+    int count = 0, nth = 0;
+    if (!selected)
+        return lc_fail(err, LC_FAULT, "out of memory for the rows");
     for (int i = 0; i < claims->count; ++i) {
         nth += claims->items[i].scene != scene;
         scene = claims->items[i].scene;
         if (is_selected(o, &claims->items[i]) && (o->shards == 0 || nth % o->shards == o->shard))
-            claims->items[kept++] = claims->items[i];
+            selected[count++] = &claims->items[i];
     }
-    claims->count = kept;
-}
-
-static lc_status judge_all(lc_report *report, lc_session *session, const lc_claims *claims, lc_error *err)
-{
-    const lc_verify_options *o = session->options;
-    int selected = claims->count;
-    const lc_scene *scene = NULL;
-    for (int i = 0; i < claims->count; ++i) {
-        if (claims->items[i].scene != scene)
-            lc_session_clear(session);
-        scene = claims->items[i].scene;
-        lc_row *row = lc_report_add(report);
-        if (!row)
-            return lc_fail(err, LC_FAULT, "out of memory for the report");
-        lc_status status = lc_judge_claim(row, session, &claims->items[i], err);
-        if (status != LC_OK)
-            --report->count;
-        if (status == LC_BAD_INPUT && !claims->items[i].decide && lc_is_foreign(session, claims->items[i].estimator)) {
-            status = lc_report_note(report, claims->items[i].check->name, lc_scene_description(scene)->name, err->text, err);
-            --selected;
-            if (status == LC_OK)
-                continue;
-        }
-        if (status != LC_OK)
-            return status;
-        if (o->on_row)
-            o->on_row(o->user, row, report->count, selected);
-    }
-    report->paths = session->paths;
-    return LC_OK;
+    lc_status status = lc_judge_all(report, session, selected, count, err);
+    free(selected);
+    return status;
 }
 
 lc_status lc_verify(lc_report *report, const lc_verify_options *options, lc_load_scene_fn *load, lc_error *err)
@@ -164,7 +140,7 @@ lc_status lc_verify(lc_report *report, const lc_verify_options *options, lc_load
     while (lc_suite_scenes[suite_scenes])
         ++suite_scenes;
     scenes = calloc((size_t)suite_scenes, sizeof *scenes);
-    status = scenes ? plan_host(&claims, err) : lc_fail(err, LC_FAULT, "out of memory for the scenes");
+    status = scenes ? lc_plan_host(&claims, err) : lc_fail(err, LC_FAULT, "out of memory for the scenes");
     for (int i = 0; i < suite_scenes && status == LC_OK; ++i) {
         status = lc_suite_scene(&scenes[scene_count], lc_suite_scenes[i], options->seed, load, err);
         if (status == LC_OK)
@@ -177,10 +153,8 @@ lc_status lc_verify(lc_report *report, const lc_verify_options *options, lc_load
         session.rows = claims.count;
         lc_budget budget = {options->false_fail, options->false_pass, session.rows, 3, LC_MOST_LOOKS};
         lc_budget_text(report->budget, sizeof report->budget, &budget, 64, 64);
-        select_claims(&claims, options);
-        status = judge_all(report, &session, &claims, err);
+        status = judge_selected(report, &session, &claims, err);
     }
-    lc_session_clear(&session);
     lc_claims_release(&claims);
     for (int i = 0; i < scene_count; ++i)
         lc_scene_free(scenes[i]);
