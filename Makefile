@@ -63,7 +63,7 @@ WORKER := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard src/core/*.c verify/grade/w
 PROOF := $(patsubst %.c,$(BUILD)/obj/%.o,$(filter-out %/calibrate.c %/power.c %/kill.c,$(wildcard verify/proof/*.c)))
 
 .PHONY: all check verify verify-table full-table specular-proof pictures povray-reference mitsuba-table renderer-study lint asan-check \
-        calibrate power seeds few-seeds judge-mutants mutants diagnosis-proof bench needs fresh clean help
+        calibrate power seeds few-seeds proof judge-mutants mutants diagnosis-proof bench needs fresh clean help
 all: $(BUILD)/lightcheck $(BUILD)/lightcheck-worker $(BUILD)/obj/estimators/template.o ## build the program
 
 # A plug-in finds the functions of lightcheck.h in the program, and no others.
@@ -170,6 +170,10 @@ seeds: all ## the quick suite with SEEDS=50 other seeds, each a minute; goes on 
 
 few-seeds: ## a handful of that: a fifth of the scenes with each of three seeds, in less than a minute
 	@$(MAKE) seeds SEEDS=3 SHARDS=5
+
+proof: all ## the full suite at margins of 0.05% max(1, c), overnight; goes on where it was stopped: results/proof.md (SCENE=one: not kept)
+	sh verify/proof/proof.sh $(BUILD)/lightcheck $(BUILD)/proof $(SCENE) > $(BUILD)/proof.md; status=$$?; \
+	    [ $$status -gt 1 ] || [ -n "$(SCENE)" ] || cp $(BUILD)/proof.md results/proof.md; exit $$status
 
 judge-mutants: ## wrong judges, each of which the tests must catch
 	@sh verify/tests/judge_mutants.sh

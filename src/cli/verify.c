@@ -250,8 +250,8 @@ static int run(const lc_command *self, int argc, char **argv)
 {
     verify_arguments a = {.suite = "quick", .seed = "1", .format = "text", .budget = 1e-6, .seconds = 600};
     const lc_option options[] = {
-        {0, "suite", LC_OPT_CHOICE, &a.suite, "quick|full", "margins 0.5% or 0.25% times max(1, c); default quick", 0,
-         0, "quick|full"},
+        {0, "suite", LC_OPT_CHOICE, &a.suite, "quick|full|proof",
+         "margins 0.5%, 0.25% or (hours) 0.05% times max(1, c); default quick", 0, 0, "quick|full|proof"},
         {'e', "estimator", LC_OPT_STRING, &a.estimator, "NAME|FILE.c",
          "only this estimator, a mutant, or a file of your own", 0, 0, NULL},
         {0, "jail", LC_OPT_FLAG, &a.jail, NULL, "runs FILE.c locked up: for code that you do not trust", 0, 0, NULL},
@@ -280,7 +280,7 @@ static int run(const lc_command *self, int argc, char **argv)
 
 const lc_command lc_command_verify = {
     "verify",
-    "[--suite quick|full] [-e NAME|FILE.c] [-c CHECK] [--scene SCENE] [options]",
+    "[--suite quick|full|proof] [-e NAME|FILE.c] [-c CHECK] [--scene SCENE] [options]",
     "puts estimators to the test",
     "PASS: shown equal to what is expected, within the margin. FAIL: shown different. UNDECIDED: the samples ran out, "
     "which is no\n"

@@ -186,9 +186,21 @@ static int find_rule(const char *name)
     return r;
 }
 
-static void report_target(FILE *table, const char *what, double wanted, double is)
+/* Samples without which no test at all has this power against a Gaussian image that is off by `bias` everywhere, though it knew
+ * the variance and that the bias is the same everywhere: the two-sided z test of the mean (to a term of 1e-20, the chance
+ * to fail on the wrong side). */
+static double least_of_any_test(const lc_law *law, int arms, double bias, double power)
 {
-    fprintf(table, "| %s | >= %.0fx | %.3gx | %s |\n", what, wanted, is, is >= wanted ? "met" : "**missed**");
+    double z = lc_normal_quantile(0.5 * ALPHA) + lc_normal_quantile(1 - power);
+    return arms * pow(law->deviation / law->mean * z / bias, 2) / LC_RULE_PIXELS;
+}
+
+static void report_target(FILE *table, const char *what, double wanted, double other, double ours, double least)
+{
+    fprintf(table, "| %s | >= %.0fx | %.3gx | %.3gx | %s |\n", what, wanted, other / ours, other / least,
+            other / ours >= wanted    ? "met"
+            : other / least >= wanted ? "**missed**"
+                                      : "**missed**, and out of any test's reach");
 }
 
 enum { SETUPS = 5 }; /* law and arms, each against the three biases */
@@ -208,45 +220,73 @@ static double over_best(const result *r, int rules, int *best)
     return r->n99[rules - 1] / r->n99[*best];
 }
 
+/* Samples a pixel from which on the tile of this bias is tested at all on the side that its skewness spoils. */
+static double guarded_until(const lc_law *law, bias_kind bias)
+{
+    int levels = lc_pyramid_levels(LC_RULE_SIDE, LC_RULE_SIDE);
+    double pixels = bias == BIAS_PIXEL ? 1 : bias == BIAS_TILE ? 64 : LC_RULE_PIXELS;
+    double weight = lc_skew_weight(0.5 * ALPHA / levels / (LC_RULE_PIXELS / pixels));
+    return pow(law->skewness * weight / LC_SKEW_LIMIT, 2) / pixels;
+}
+
 static void report_best(FILE *table, result results[SETUPS][4], const setup *setups, int rules)
 {
     fprintf(table,
             "\n## Beside the best of the others\n\nWhich differs from row to row; at 99%% power, among those at the "
-            "equal rate. Target: never over 1.2x.\n\n| law | films | bias | best of the others | its samples | "
-            "ours | ours over it | <= 1.2x |\n|---|---|---|---|---|---|---|---|\n");
+            "equal rate. Target: never over 1.2x. `Guard until`: samples\nfrom which on a tile of the bias's size is "
+            "tested on the side that its skewness spoils.\n\n| law | films | bias | best of the others | its samples | "
+            "ours | guard until | ours over it | <= 1.2x |\n|---|---|---|---|---|---|---|---|---|\n");
+    int met = 0, at_floor = 0, guarded = 0;
     for (int s = 0; s < SETUPS; ++s)
         for (int b = BIAS_IMAGE; b <= BIAS_PIXEL; ++b) {
             int best;
             const result *r = &results[s][b];
-            double ratio = over_best(r, rules, &best);
-            fprintf(table, "| %s | %d | %s | %s | %.0f | %.0f | %.3g | %s |\n", setups[s].law.name, setups[s].arms,
-                    biases[b].name, lc_rules[best].name, r->n99[best], r->n99[rules - 1], ratio,
-                    ratio <= 1.2 ? "met" : "**missed**");
+            double ratio = over_best(r, rules, &best), ours = r->n99[rules - 1], guard = guarded_until(&setups[s].law, b);
+            const char *word = ratio <= 1.2                ? "met"
+                               : ours <= LC_LEAST_SAMPLES  ? "**missed**: the floor"
+                               : guard > r->n99[best] * 1.2 ? "**missed**: the guard"
+                                                           : "**missed**";
+            met += ratio <= 1.2;
+            at_floor += ratio > 1.2 && ours <= LC_LEAST_SAMPLES;
+            guarded += ratio > 1.2 && ours > LC_LEAST_SAMPLES && guard > r->n99[best] * 1.2;
+            fprintf(table, "| %s | %d | %s | %s | %.0f | %.0f | %.0f | %.3g | %s |\n", setups[s].law.name,
+                    setups[s].arms, biases[b].name, lc_rules[best].name, r->n99[best], ours, guard, ratio, word);
         }
     fprintf(table,
-            "\nWhere it is missed, it is by two decisions of the judge. No level is tested below %d samples a pixel,\n"
-            "so that Student's t holds with any mixture of variances: that is a floor, not a factor. And a skewed\n"
-            "tile is tested only from (g z^3 / 2.08)^2 of its samples on, because without this guard its rate would\n"
-            "not be the one claimed (see the rates above, and `unguarded` in calibration.md); until then a bias\n"
-            "shows in coarser tiles. Rules that are ahead there either fail right images too, or are given the\n"
-            "exact variance and law.\n",
-            (int)LC_LEAST_SAMPLES);
+            "\nMet in %d of %d rows. In %d it is missed by the floor: no level is tested below %d samples a pixel, so "
+            "that\nStudent's t holds with any mixture of variances. That is a million samples, 0.1 to 0.3 s, and no "
+            "factor.\nIn %d it is missed by the guard: on a skewed law a tile is tested only from (g z^3 / 2.08)^2 of "
+            "its samples\non, because without that its rate would not be the one claimed (see the rates above, and "
+            "`unguarded` in\ncalibration.md); until then a bias shows in coarser tiles. Rules that are ahead there fail "
+            "right images\ntoo (Jung's tiles and pixels: their rates above), or are given the exact law of a pixel, which "
+            "no test of a\nrenderer has (Mitsuba's, here). Both are what a false FAIL in a million costs, and stay.\n",
+            met, SETUPS * 3, at_floor, (int)LC_LEAST_SAMPLES, guarded);
 }
 
-static void report_targets(FILE *table, result results[SETUPS][4], int rules)
+static void report_targets(FILE *table, result results[SETUPS][4], const setup *setups, int rules)
 {
     static const char *const mitsuba[] = {"Mitsuba 3, published", "Mitsuba 3, strict", "Mitsuba 3, quorum"};
-    int ours = rules - 1;
     const result *one = &results[0][BIAS_IMAGE], *two = &results[1][BIAS_IMAGE];
-    fprintf(table, "\n## Targets\n\nAt 99%% power; a bias of 1%% everywhere, Gaussian, c = 2.\n\n| target | | is | |\n"
-                   "|---|---|---|---|\n");
+    double least[2];
+    for (int i = 0; i < 2; ++i)
+        least[i] = least_of_any_test(&setups[i].law, setups[i].arms, biases[BIAS_IMAGE].size, 0.99);
+    fprintf(table,
+            "\n## Targets\n\nAt 99%% power; a bias of 1%% everywhere, Gaussian, c = 2. `At best`: by the most powerful "
+            "test there is at the\nsame rate, which looks for this bias only and knows the variance: %.0f samples with one "
+            "film, %.0f with two.\n\n| target | | is | at best | |\n|---|---|---|---|---|\n",
+            ceil(least[0]), ceil(least[1]));
     for (int i = 0; i < 3; ++i) {
         char what[80];
         snprintf(what, sizeof what, "fewer samples than %s", mitsuba[i]);
-        report_target(table, what, 100, one->n99[find_rule(mitsuba[i])] / one->n99[ours]);
+        report_target(table, what, 100, one->n99[find_rule(mitsuba[i])], one->n99[rules - 1], least[0]);
     }
-    report_target(table, "fewer than KS of pixels, two films", 10,
-                  two->n99[find_rule("Jung et al., KS of pixels")] / two->n99[ours]);
+    report_target(table, "fewer than KS of pixels, two films", 10, two->n99[find_rule("Jung et al., KS of pixels")],
+                  two->n99[rules - 1], least[1]);
+    fprintf(table,
+            "\n`Published` is Mitsuba's rule as it is. `Quorum` and `strict` are ours: its rule at our rate, by the "
+            "quorum of pixels\nor by the level of each. The quorum form is near to a sign test of the whole image: "
+            "%.3gx of the best test there is.\n",
+            one->n99[find_rule("Mitsuba 3, quorum")] / least[0]);
 }
 
 static int report(FILE *table, uint64_t seed)
@@ -298,7 +338,7 @@ static int report(FILE *table, uint64_t seed)
             report_experiment(table, &results[s][b], e);
         }
     report_best(table, results, setups, e->rules);
-    report_targets(table, results, e->rules);
+    report_targets(table, results, setups, e->rules);
     free(e);
     return 0;
 }

@@ -9,8 +9,8 @@
 
 void lc_report_text_header(FILE *out)
 {
-    fprintf(out, "%-11s %-24s %-20s %-5s %-9s %10s  %-22s %8s %9s\n", "check", "scene", "estimator", "k", "verdict",
-            "estimate", "interval", "margin", "paths");
+    fprintf(out, "%-11s %-24s %-20s %-5s %-9s %10s  %-22s %8s %9s %7s\n", "check", "scene", "estimator", "k", "verdict",
+            "estimate", "interval", "margin", "paths", "unseen");
 }
 
 /* 4.6M */
@@ -24,15 +24,28 @@ static void format_count(char *text, size_t size, uint64_t count)
         snprintf(text, size, "%llu", (unsigned long long)count);
 }
 
+/* How large a contribution may be that no sample met, in units of the mean; a PASS excludes larger ones. */
+static void format_unseen(char *text, size_t size, const lc_row *row)
+{
+    text[0] = 0;
+    if (row->verdict == LC_ROW_PASS && !row->exact && row->missed >= 1e15)
+        snprintf(text, size, "%.1e", row->missed);
+    else if (row->verdict == LC_ROW_PASS && !row->exact && row->missed >= 100)
+        format_count(text, size, (uint64_t)(row->missed + 0.5));
+    else if (row->verdict == LC_ROW_PASS && !row->exact && row->missed > 0)
+        snprintf(text, size, "%.2g", row->missed);
+}
+
 void lc_report_text_row(FILE *out, const lc_row *row)
 {
-    char interval[64] = "", margin[16] = "exact", estimate[32] = "", paths[32];
+    char interval[64] = "", margin[16] = "exact", estimate[32] = "", paths[32], unseen[32];
     char bounces[32];
     if (row->min_bounces == row->max_bounces)
         snprintf(bounces, sizeof bounces, "%d", row->min_bounces);
     else
         snprintf(bounces, sizeof bounces, "%d-%d", row->min_bounces, row->max_bounces);
     format_count(paths, sizeof paths, row->paths);
+    format_unseen(unseen, sizeof unseen, row);
     if (!row->exact) {
         snprintf(estimate, sizeof estimate, "%.5f", row->ratio);
         if (isfinite(row->low) && isfinite(row->high))
@@ -41,8 +54,8 @@ void lc_report_text_row(FILE *out, const lc_row *row)
             snprintf(interval, sizeof interval, "(none yet)");
         snprintf(margin, sizeof margin, "%.2f%%", 100 * row->margin);
     }
-    fprintf(out, "%-11s %-24s %-20s %-5s %-9s %10s  %-22s %8s %9s", row->check, row->scene, row->estimator, bounces,
-            lc_row_verdict_name(row->verdict), estimate, interval, margin, paths);
+    fprintf(out, "%-11s %-24s %-20s %-5s %-9s %10s  %-22s %8s %9s %7s", row->check, row->scene, row->estimator, bounces,
+            lc_row_verdict_name(row->verdict), estimate, interval, margin, paths, unseen);
 }
 
 static void print_trouble(FILE *out, const lc_row *row)
@@ -94,7 +107,9 @@ void lc_report_text(FILE *out, const lc_report *report)
     if (report->behaviour)
         print_behaviour(out, report->behaviour);
     fprintf(out, "\nestimate: mean of reflected light / what is expected, in the hardest of three channels; PASS: "
-                 "shown within 1 +- margin.\n");
+                 "shown within 1 +- margin.\n"
+                 "unseen: light of the margin's size that no sample met can only come in samples worth more than this many "
+                 "times the mean.\n");
     fprintf(out, "%s", report->budget);
     fprintf(out,
             "%d rows: %d PASS, %d FAIL, %d UNDECIDED; %d pairs of estimator and scene not applicable; %.0f M paths; "

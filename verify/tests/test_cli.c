@@ -269,7 +269,7 @@ START_TEST(bad_values_are_2_and_say_what_is_good)
     run_bad(BAD, "two whole numbers", "sample", "cornell", "-e", "light_direct", "--pixel", "1x2");
     run_bad(BAD, "less than 2^32 - 1", "sample", "cornell", "-e", "light_direct", "--pixel", "1,2", "--index",
             "4294967295");
-    run_bad(BAD, "not quick|full", "verify", "--suite", "slow");
+    run_bad(BAD, "not quick|full|proof", "verify", "--suite", "slow");
     run_bad(BAD, "not text|json|junit", "verify", "--format", "yaml");
     run_bad(BAD, "a number above 0", "verify", "--margin", "0");
     run_bad(BAD, "a number above 0", "verify", "--margin", "nan");

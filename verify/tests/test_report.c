@@ -219,6 +219,23 @@ START_TEST(text_tells_what_failed)
     ck_assert_ptr_nonnull(strstr(text, "worst tile: 4x2 pixels at 8,16"));
     ck_assert_ptr_nonnull(strstr(text, "again: build/lightcheck verify -e light_direct\n"));
     ck_assert_ptr_nonnull(strstr(text, "1.2M"));
+    lc_row pass = {.verdict = LC_ROW_PASS, .missed = 1667, .low = 0.99, .high = 1.01}; /* 0.005 x 4.6 M / 13.8 */
+    static const struct {
+        double missed;
+        const char *ending;
+    } unseen[] = {{1667, "   1.7k"}, {99.4, "     99"}, {4.2, "    4.2"}, {2.5e6, "   2.5M"}, {0, "       "}};
+    for (size_t i = 0; i < sizeof unseen / sizeof unseen[0]; ++i) {
+        FILE *out = fmemopen(text, sizeof text, "w");
+        pass.missed = unseen[i].missed;
+        lc_report_text_row(out, &pass);
+        fclose(out);
+        ck_assert_str_eq(text + strlen(text) - 7, unseen[i].ending);
+    }
+    lc_row fail = {.verdict = LC_ROW_FAIL, .missed = 1667};
+    FILE *out = fmemopen(text, sizeof text, "w");
+    lc_report_text_row(out, &fail);
+    fclose(out);
+    ck_assert_ptr_null(strstr(text, "1.7k")); /* only a PASS excludes anything */
     lc_report_release(&report);
 }
 END_TEST
