@@ -117,8 +117,14 @@ void lc_light_sample_solid(const lc_scene *scene, int i, const lc_hit *hit, lc_s
         sample_area(scene, light->index, 1.0 / scene->shapes[light->index].area, hit, sampler, out);
         double u = lc_next(&start), v = lc_next(&start), cos_light = -lc_dot(out->n, out->wi);
         out->pdf_solid = cos_light > 0 ? out->pdf_area * out->distance * out->distance / cos_light : 0.0;
-        if (lc_sample_solid(scene, light->index, hit, u, v, out)) {
+        lc_hit seen = *hit; /* a moving light is sampled at rest, from where it is seen so */
+        lc_vec3 shift = lc_shape_shift(scene, light->index, hit->time);
+        if (scene->moves)
+            seen.p = lc_sub(hit->p, shift);
+        if (lc_sample_solid(scene, light->index, &seen, u, v, out)) {
             out->radiance = lc_shape_radiance(scene, light->index, out->part, out->p);
+            if (scene->moves)
+                out->p = lc_add(out->p, shift);
             out->pdf_area = 0.0; /* another density than by area */
         }
     }

@@ -290,7 +290,7 @@ static const struct {
     {"lens_edge", expect_lens, "light_direct", "the share that a rectangle has of a disk of radius a |1 - z / f|", 0, ""},
     {"motion_flight", expect_flight, "light_direct", "the share of time in which a line meets a flat shape", 0, ""},
     {"motion_shadow", expect_passing, "light_direct", "E0 cos times the share of time without shadow", 0, ""},
-    {"motion_lamp", expect_moving_lamp, "light_direct hemisphere_direct",
+    {"motion_lamp", expect_moving_lamp, "light_direct hemisphere_direct light_solid_angle",
      "Lambert's polygon formula, mean over time by quadrature", 0, ""},
 };
 

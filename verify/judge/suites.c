@@ -291,6 +291,7 @@ const lc_cell lc_cells[] = {
     {"motion_lamp", "hemisphere_direct", 1, 5.76},
     {"motion_lamp", "light_direct", 1, 0.54},
     {"motion_lamp", "three_point", 1, 0.539},
+    {"motion_lamp", "light_solid_angle", 1, 0.417},
     {"bright_mirrors", "path_full", 3, 1},
     {"bright_mirrors", "path", 3, 3.13},
     {"bright_mirrors", "mirror", 3, 2.7},
@@ -362,6 +363,7 @@ static const struct {
     {"light_solid_angle", "analytic", "five_lights", 1, 1},
     {"light_solid_angle", "furnace", "furnace_sphere", 1, 1},
     {"light_solid_angle", "equality", "cornell", 1, 0},
+    {"light_solid_angle", "effects", "motion_lamp", 1, 1},
 };
 
 int lc_suite_has(const lc_suite *suite, const lc_claim *claim)

@@ -25,8 +25,8 @@ diagnose() {
     seconds=$(cat "$folder/$1.time")
     grep -q 'is wrong$' "$folder/$1.out" || said=none
     grep -q '^behaves as none' "$folder/$1.out" && said=none
-    grep -q '^not all was decided; what' "$folder/$1.out" && said=$(sed -n 's/^  \([a-z_0-9]*\): .*/?\1/p' "$folder/$1.out" | paste -sd, -)
-    grep -q '^behaves exactly as any' "$folder/$1.out" && said=$(sed -n 's/^  \([a-z_0-9]*\): .*/\1/p' "$folder/$1.out" | paste -sd, -)
+    grep -q '^not all was decided; what' "$folder/$1.out" && said=$(sed -n 's/^  \([a-z_0-9]*\): .*/?\1/p' "$folder/$1.out" | grep -v '^?measured' | paste -sd, -)
+    grep -q '^behaves exactly as any' "$folder/$1.out" && said=$(sed -n 's/^  \([a-z_0-9]*\): .*/\1/p' "$folder/$1.out" | grep -v '^measured' | paste -sd, -)
     grep -q '^behaves exactly as [a-z_0-9]* with' "$folder/$1.out" &&
         said=$(sed -n 's/^behaves exactly as .* (\([a-z_0-9]*\))$/\1/p' "$folder/$1.out")
     [ -s "$folder/$1.out" ] || said="ERROR"
@@ -72,8 +72,9 @@ awk '
             has = 0
             for (i = 1; i <= many; ++i) if (names[i] == $3) has = 1
             if (asserted && has) { ++right; if (many == 1) ++alone }
+            if (names[1] == "?" $3) { ++right; ++listed }
             if (asserted && !has) ++wrong
-            outcome = asserted ? (has ? (many == 1 ? "named" : "named with its equals") : "WRONG NAME") : "abstains"
+            outcome = asserted ? (has ? (many == 1 ? "named" : "named with its equals") : "WRONG NAME") : names[1] == "?" $3 ? "first, not asserted" : "abstains"
             said = asserted && many > 1 ? $4 : asserted && !has ? $4 : asserted ? "" : $4
             table = table sprintf("| %s | %s | %s%s | %s | %s | %s |\n", $1, $3, outcome, said ? ": " said : "", $6, $7, $8)
         } else if ($2 == "unknown") {
@@ -91,7 +92,7 @@ awk '
         user += $7
     }
     END {
-        printf "\n%d wrong files, each with a bug of the catalogue: %d get their name (%.1f%%), %d of them no other; %d a wrong name.\n", bugs, right, bugs ? 100 * right / bugs : 0, alone, wrong
+        printf "\n%d wrong files, each with a bug of the catalogue: the right name is first for %d (%.1f%%), alone and asserted for %d, first of what was not decided for %d; %d are given a wrong name.\n", bugs, right, bugs ? 100 * right / bugs : 0, alone, listed, wrong
         printf "%d with a bug that it does not know: %d are given a name; the fingerprint is true of %d.\n", others, claimed, told
         printf "%d right files: %d not shown wrong.\n\nSlowest: %.1f s by the clock, %.1f s of one core; all: %.0f s of one core.\n", rights, cleared, slowest, most, user
         if (table) printf "\n| file | bug | diagnosis | s | s of one core | M paths |\n|---|---|---|---|---|---|\n%s", table
