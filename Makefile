@@ -63,7 +63,7 @@ WORKER := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard src/core/*.c verify/grade/w
 PROOF := $(patsubst %.c,$(BUILD)/obj/%.o,$(filter-out %/calibrate.c %/power.c,$(wildcard verify/proof/*.c)))
 
 .PHONY: all check verify verify-table full-table pictures povray-reference mitsuba-table renderer-study lint asan-check \
-        calibrate power judge-mutants mutants bench needs fresh clean help
+        calibrate power judge-mutants mutants bench student-kit needs fresh clean help
 all: $(BUILD)/lightcheck $(BUILD)/lightcheck-worker $(BUILD)/obj/estimators/template.o ## build the program
 
 # A plug-in finds the functions of lightcheck.h in the program, and no others.
@@ -129,6 +129,12 @@ check: all $(BUILD)/tests ## run the unit and command-line tests, and the exampl
 	LIGHTCHECK=$(BUILD)/lightcheck $(BUILD)/tests
 	@sh verify/tests/docs_selftest.sh $(BUILD)/lightcheck
 	@sh verify/tests/docs.sh $(BUILD)/lightcheck
+	@sh verify/tests/kit.sh $(BUILD)/lightcheck
+
+student-kit: all ## what a course gives to its students, without any solution: build/lightcheck-student.tar.gz
+	rm -rf $(BUILD)/lightcheck-student
+	sh verify/grade/kit/make_kit.sh $(BUILD)/lightcheck $(BUILD)/lightcheck-student
+	tar -C $(BUILD) -czf $(BUILD)/lightcheck-student.tar.gz lightcheck-student
 
 povray-reference: all ## render the references of the povray check anew (needs POV-Ray, takes minutes)
 	$(BUILD)/lightcheck reference
