@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "verify/report/report.h"
+#include "verify/report/safe.h"
 
 static lc_row *add_row(lc_report *report, lc_row_verdict verdict)
 {
@@ -205,6 +206,33 @@ START_TEST(junit_is_well_formed)
 }
 END_TEST
 
+/* Any bytes: what is UTF-8 stays, what is not becomes '?', and nothing vanishes. */
+START_TEST(texts_of_any_bytes)
+{
+    static const char *const cases[][3] = {
+        {"m\xc3\xbc \xe2\x82\xac \xf0\x9f\x98\x80", "m\xc3\xbc \xe2\x82\xac \xf0\x9f\x98\x80", "m\xc3\xbc \xe2\x82\xac \xf0\x9f\x98\x80"},
+        {"a\xff" "b\x80", "a?b?", "a?b?"},                          /* no first byte, */
+        {"\xc0\xaf \xe0\x80\x80", "?? ???", "?? ???"},           /* overlong, */
+        {"\xed\xa0\x80 \xf4\x90\x80\x80", "??? ????", "??? ????"}, /* surrogate, too large, */
+        {"\xe2\x82", "??", "??"},                                   /* cut off */
+        {"\x01<\"\x1b", "\x01<\"\x1b", " &lt;&quot; "},
+        {"\xef\xbf\xbf", "\xef\xbf\xbf", " "}, /* XML has no U+FFFF */
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
+        char xml[64] = "";
+        json_t *o = lc_json_text(cases[i][0]);
+        ck_assert_str_eq(json_string_value(o), cases[i][1]);
+        json_decref(o);
+        FILE *out = fmemopen(xml, sizeof xml, "w");
+        lc_xml_text(out, cases[i][0]);
+        fclose(out);
+        ck_assert_str_eq(xml, cases[i][2]);
+    }
+    ck_assert_ptr_null(json_string("\xff")); /* why this is needed */
+    ck_assert_ptr_null(json_real(NAN));
+}
+END_TEST
+
 START_TEST(text_tells_what_failed)
 {
     lc_report report;
@@ -247,6 +275,7 @@ Suite *lc_suite_report(void)
     tcase_add_test(tc, json_reads_back);
     tcase_add_test(tc, json_has_null_for_what_is_no_number);
     tcase_add_test(tc, junit_is_well_formed);
+    tcase_add_test(tc, texts_of_any_bytes);
     tcase_add_test(tc, text_tells_what_failed);
     tcase_add_test(tc, status_is_the_worst_row);
     suite_add_tcase(suite, tc);
