@@ -4,6 +4,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
+#include <stdio.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <time.h>
@@ -29,6 +30,11 @@ static void become(const lc_job *job, pid_t parent)
         _exit(127);
     for (int i = 3; i < 256; ++i)
         close(i);
+    if (job->run) {
+        int status = job->run(job->user);
+        fflush(NULL);
+        _exit(status);
+    }
     signal(SIGPIPE, SIG_DFL);
     signal(SIGXFSZ, SIG_DFL);
     execv(job->words[0], (char *const *)job->words);
@@ -41,6 +47,7 @@ static void start(lc_job *job)
     job->begun = now();
     job->exit_status = -1;
     job->signal = job->is_late = 0;
+    fflush(NULL); /* or the child would write it once more */
     job->pid = fork();
     if (job->pid == 0)
         become(job, parent);

@@ -88,6 +88,30 @@ START_TEST(test_pool_log)
 }
 END_TEST
 
+static int work(void *user)
+{
+    printf("number %d\n", (int)(size_t)user);
+    return 40 + (int)(size_t)user;
+}
+
+/* A function of ours, in a process of its own; what the caller had printed is not printed twice. */
+START_TEST(test_pool_function)
+{
+    char path[] = "/tmp/lightcheck-pool-XXXXXX", text[64] = "";
+    int fd = mkstemp(path);
+    lc_job job = {.run = work, .log = path, .seconds = 60, .user = (void *)2};
+    lc_error err;
+    printf(" "); /* stays in the buffer */
+    ended = 0;
+    ck_assert_int_eq(lc_pool_run(&job, 1, 1, note, &err), LC_OK);
+    ck_assert_int_eq(job.exit_status, 42);
+    ck_assert_int_gt((int)read(fd, text, sizeof text - 1), 0);
+    ck_assert_str_eq(text, "number 2\n");
+    close(fd);
+    unlink(path);
+}
+END_TEST
+
 /* The first failure of the caller's ends the run, and what still runs. */
 START_TEST(test_pool_refused)
 {
@@ -107,6 +131,7 @@ Suite *lc_suite_pool(void)
     tcase_set_timeout(tests, 30);
     tcase_add_test(tests, test_pool_stuck);
     tcase_add_test(tests, test_pool_log);
+    tcase_add_test(tests, test_pool_function);
     tcase_add_test(tests, test_pool_refused);
     suite_add_tcase(suite, tests);
     return suite;
