@@ -66,7 +66,9 @@ static void name_anew(lc_roster *roster, uint64_t seed)
     uint64_t hash = 14695981039346656037ULL ^ seed;
     for (const char *c = s->id; *c; ++c)
         hash = (hash ^ (unsigned char)*c) * 1099511628211ULL;
-    uint32_t number = (uint32_t)(hash ^ hash >> 32);
+    hash = (hash ^ hash >> 30) * 0xbf58476d1ce4e5b9ULL; /* SplitMix64's mixing: FNV leaves neighbours neighbours */
+    hash = (hash ^ hash >> 27) * 0x94d049bb133111ebULL;
+    uint32_t number = (uint32_t)(hash >> 32);
     for (int again = 1; again; ++number) {
         snprintf(s->pseudonym, sizeof s->pseudonym, "s%08x", (unsigned)number);
         again = 0;
