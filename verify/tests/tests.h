@@ -44,6 +44,8 @@ Suite *lc_suite_verify(void);
 Suite *lc_suite_mutants(void);
 Suite *lc_suite_plugin(void);
 Suite *lc_suite_jail(void);
+Suite *lc_suite_assignment(void);
+Suite *lc_suite_grade(void);
 Suite *lc_suite_sensitivity(void);
 Suite *lc_suite_nee(void);
 Suite *lc_suite_metamorphic(void);
