@@ -30,25 +30,6 @@ static void show_row(void *user, const lc_row *row, int done, int count)
                 lc_row_verdict_name(row->verdict), done == count ? "\r\033[K" : "");
 }
 
-static lc_status read_seed(uint64_t *seed, const char *text, lc_error *err)
-{
-    char *end;
-    if (strcmp(text, "random") == 0) {
-        FILE *f = fopen("/dev/urandom", "rb");
-        size_t read = f ? fread(seed, sizeof *seed, 1, f) : 0;
-        if (f)
-            fclose(f);
-        return read == 1 ? LC_OK : lc_fail(err, LC_FAULT, "/dev/urandom: cannot draw a seed");
-    }
-    errno = 0;
-    unsigned long long number = strtoull(text, &end, 10);
-    if (end == text || *end || errno || text[0] == '-')
-        return lc_fail(err, LC_BAD_INPUT, "--seed: '%s' is neither `random` nor a whole number from 0 to 2^64 - 1",
-                       text);
-    *seed = number;
-    return LC_OK;
-}
-
 static lc_status check_names(const verify_arguments *a, lc_error *err)
 {
     int known = !a->check;
@@ -158,7 +139,7 @@ static lc_status verify(void *user, const lc_strings *rest, lc_error *err)
     options.on_row = show_row;
     lc_status status = check_names(a, err);
     if (status == LC_OK)
-        status = read_seed(&options.seed, a->seed, err);
+        status = lc_cli_read_seed(&options.seed, a->seed, err);
     if (status == LC_OK && a->renderer && a->estimator)
         status = lc_fail(err, LC_BAD_INPUT, "--renderer and -e: one or the other is put to the test");
     if (status == LC_OK)

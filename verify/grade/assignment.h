@@ -9,6 +9,7 @@
 
 #include "core/host.h"
 #include "verify/grade/result.h"
+#include "verify/report/diagnosis.h"
 
 typedef enum lc_test_kind {
     LC_KIND_DESCRIPTOR, /* compiles, and claims the lobes, emitters and bounces that are asked for */
@@ -26,22 +27,18 @@ typedef struct lc_test {
     char check[32];                     /* CHECK: which */
     char scenes[LC_MOST_SCENES][64];    /* of the suites, families, or files */
     int scene_count;
-    int min_bounces, max_bounces;       /* MEAN, FINITE, VARIANCE; -1: as the assignment says */
+    int min_bounces, max_bounces;       /* MEAN, FINITE, VARIANCE: what is summed; CHECK: only claims of these; -1: all that there are */
     double points;
     lc_visibility visibility;
     int required[LC_MOST_REQUIRED], required_count; /* indices of earlier tests */
+    char relation[32];                  /* CHECK: only the claims of this relation; "": all */
     char hint[400];                     /* of the test itself, before the bug is known; may be "" */
-    double factor;                      /* VARIANCE: passes within 1 / factor .. factor of the reference's */
+    double least, most;                 /* VARIANCE: that of the reference times these; 0 and INFINITY where not given */
 } lc_test;
-
-typedef enum lc_hint_level {
-    LC_HINT_NONE,
-    LC_HINT_CATEGORY, /* what the bug has to do with */
-    LC_HINT_NAME      /* where to look, where the bug is known */
-} lc_hint_level;
 
 typedef struct lc_assignment {
     char name[64], title[128], summary[512];
+    char given[256];                 /* how it was named, for reproducing lines */
     char path[1024];                 /* of its file, for messages */
     char reference[64];              /* a shipped estimator: language, mean and variance are its */
     unsigned lobes, emitters;        /* that the file must claim at least: the reference's, unless given */
@@ -52,11 +49,14 @@ typedef struct lc_assignment {
     int solution_count;
     char mutants[LC_MOST_SOLUTIONS][64];   /* of: wrong versions of these estimators must not get all points */
     int mutant_count;
-    lc_hint_level hints;
+    char beyond[LC_MOST_SOLUTIONS][64];    /* wrong versions that it does not ask about, such as of motion blur */
+    int beyond_count;
+    lc_hint hints;                   /* whether a known bug is looked for, and how much is told of it */
     int hint_after_attempts;         /* no hint before this many attempts */
     time_t due, published;           /* 0: never set */
     double late_per_day, late_most;  /* share of all points a begun day, and at most; 0: the course's own system does it */
-    double seconds;                  /* of CPU for the file, all tests together; more is TLE */
+    double cpu_seconds;              /* for the file, all tests together; more is TLE */
+    char sentences[256];             /* a translated table (sentences.h), beside the assignment's file; "": the program's */
     lc_test tests[LC_MOST_TESTS];
     int test_count;
 } lc_assignment;
@@ -65,6 +65,8 @@ typedef struct lc_assignment {
 lc_status lc_assignment_read(lc_assignment *out, const char *name_or_path, lc_error *err);
 /* Calls `each` with the name and title of every assignment that the program ships, by name. */
 lc_status lc_assignment_list(void (*each)(void *user, const char *name, const char *title), void *user, lc_error *err);
+/* A shipped estimator or a variant of that name, in this process; NULL: there is none. */
+const lc_estimator *lc_right_estimator(const char *name);
 double lc_assignment_points(const lc_assignment *assignment);
 
 #endif

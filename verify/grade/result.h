@@ -3,7 +3,8 @@
  * result.h: the one result model of a grading. lc_grade_file() fills it; each format is a function of it.
  *
  * Texts are UTF-8, "" where there is none. A number that is not known is NAN. What a student must not see yet (the scene of a hidden
- * test, its numbers, its pictures) is in here all the same: a format for students asks lc_test_is_open() first.
+ * test, its numbers, its pictures) is in here all the same: a format for students writes `shown` instead of `sentence`, and asks
+ * lc_test_is_open() before it shows scene, numbers, pictures or command line.
  */
 #ifndef LC_RESULT_H
 #define LC_RESULT_H
@@ -65,6 +66,7 @@ typedef struct lc_test_result {
     lc_visibility visibility;
     char sentence_id[48];    /* the entry of the table of sentences that `sentence` was made from */
     char sentence[640];      /* what was measured against what was expected, with its interval */
+    char shown[640];         /* `sentence`, or where that is withheld what a student may read instead */
     char hint[400];          /* where to look; "" when the assignment gives none (yet) */
     char because[48];        /* SKIPPED: the test that did not pass */
     char reproduce[512];     /* a command line */

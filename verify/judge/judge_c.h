@@ -26,7 +26,7 @@ typedef struct lc_stock_values {
     lc_expected expected;
 } lc_stock_values;
 
-typedef struct lc_session {
+struct lc_session {
     const lc_verify_options *options;
     lc_stock_film *films;
     lc_stock_values *values;
@@ -35,7 +35,7 @@ typedef struct lc_session {
     double margin;
     uint64_t paths;
     struct lc_foreign *foreign; /* what is known of the renderer under test on this scene; NULL: nothing yet */
-} lc_session;
+};
 
 enum { LC_MOST_LOOKS = 5 };
 
@@ -53,9 +53,6 @@ void lc_session_clear(lc_session *session);
 
 /* 1 for the estimators that the program ships. */
 int lc_is_registered(const lc_estimator *estimator);
-
-/* The stream of an estimator in this run. One that is not in the registry never shares a stream with one that is, even under the same name. */
-uint32_t lc_session_arm(const lc_estimator *estimator);
 
 /* Decides one claim and fills the row. */
 lc_status lc_judge_claim(lc_row *row, lc_session *session, const lc_claim *claim, lc_error *err);

@@ -25,7 +25,7 @@ static json_t *row_json(const lc_row *row)
         json_object_set_new(o, "excluded_missed_contribution", lc_json_number(row->missed));
     if (row->verdict != LC_ROW_PASS)
         json_object_set_new(o, "reason", lc_json_text(row->reason));
-    if (row->tile_width)
+    if (row->tile_width && !row->exact)
         json_object_set_new(o, "worst_tile",
                             json_pack("{s:i, s:i, s:i, s:i, s:o, s:o}", "x", row->tile_x, "y", row->tile_y, "width",
                                       row->tile_width, "height", row->tile_height, "ratio", lc_json_number(row->tile_ratio),

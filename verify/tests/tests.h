@@ -49,6 +49,8 @@ Suite *lc_suite_roster(void);
 Suite *lc_suite_pool(void);
 Suite *lc_suite_handins(void);
 Suite *lc_suite_formats(void);
+Suite *lc_suite_assignment(void);
+Suite *lc_suite_grade(void);
 Suite *lc_suite_sensitivity(void);
 Suite *lc_suite_nee(void);
 Suite *lc_suite_metamorphic(void);
