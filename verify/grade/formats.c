@@ -79,19 +79,16 @@ int lc_result_shows(const lc_test_result *test, int teacher) { return teacher ||
 
 char *lc_result_feedback(const lc_test_result *t, int is_public)
 {
+    int is_open = !is_public || lc_test_is_open(t);
     size_t size = sizeof t->sentence + sizeof t->hint + sizeof t->reproduce + sizeof t->withheld + 64;
     char *text = malloc(size);
     if (!text)
         return NULL;
     if (t->status == LC_TEST_PENDING)
         snprintf(text, size, "Not judged yet.");
-    else if (t->status == LC_TEST_SKIPPED)
-        snprintf(text, size, "%s", t->sentence);
-    else if (is_public && !lc_test_is_open(t))
-        snprintf(text, size, "%s", t->withheld);
     else
-        snprintf(text, size, "%s%s%s%s%s", t->sentence, t->hint[0] ? "\nHint: " : "", t->hint,
-                 t->reproduce[0] ? "\nAgain: " : "", t->reproduce);
+        snprintf(text, size, "%s%s%s%s%s", is_open ? t->sentence : t->shown, t->hint[0] ? "\nHint: " : "", t->hint,
+                 !is_open ? "\n" : t->reproduce[0] ? "\nAgain: " : "", is_open ? t->reproduce : t->withheld);
     return text;
 }
 
@@ -157,6 +154,8 @@ static json_t *test_json(const lc_test_result *t, int teacher, int *ok)
     lc_json_set(o, "points", lc_json_number(t->points), ok);
     lc_json_set(o, "max_points", lc_json_number(t->most_points), ok);
     lc_json_set(o, "because", lc_json_text(t->because), ok);
+    lc_json_set(o, "shown", lc_json_text(teacher ? t->sentence : t->shown), ok);
+    lc_json_set(o, "hint", lc_json_text(t->hint), ok);
     lc_json_set(o, "withheld", lc_json_text(lc_result_shows(t, teacher) ? "" : t->withheld), ok);
     if (!lc_result_shows(t, teacher))
         return o;
@@ -164,7 +163,6 @@ static json_t *test_json(const lc_test_result *t, int teacher, int *ok)
     lc_json_set(o, "seed", lc_json_seed(t->seed), ok);
     lc_json_set(o, "sentence_id", lc_json_text(t->sentence_id), ok);
     lc_json_set(o, "sentence", lc_json_text(t->sentence), ok);
-    lc_json_set(o, "hint", lc_json_text(t->hint), ok);
     lc_json_set(o, "reproduce", lc_json_text(t->reproduce), ok);
     lc_json_set(o, "measured", measured_json(&t->measured, ok), ok);
     lc_json_set(o, "seconds", lc_json_number(t->seconds), ok);
@@ -192,7 +190,7 @@ lc_status lc_result_json(FILE *out, const lc_grade_result *r, int teacher, lc_er
     lc_json_set(o, "seed", lc_json_seed(r->seed), &ok);
     lc_json_set(o, "attempt", json_integer(r->attempt), &ok);
     lc_json_set(o, "jail", lc_json_text(r->jail), &ok);
-    lc_json_set(o, "complete", json_boolean(r->done == r->test_count), &ok);
+    lc_json_set(o, "complete", json_boolean(r->is_ungradable || r->done == r->test_count), &ok);
     lc_json_set(o, "ungradable", json_boolean(r->is_ungradable), &ok);
     lc_json_set(o, "fault", json_boolean(r->is_fault), &ok);
     lc_json_set(o, "code", json_string(lc_jail_code_name(r->code)), &ok);

@@ -20,7 +20,7 @@ static double now(void)
 }
 
 /* In the child. */
-static void become(const lc_job *job, pid_t parent)
+static void become(const lc_pool_job *job, pid_t parent)
 {
     int in = open("/dev/null", O_RDONLY);
     int out = open(job->log ? job->log : "/dev/null", O_WRONLY | O_CREAT | O_TRUNC, 0666);
@@ -41,7 +41,7 @@ static void become(const lc_job *job, pid_t parent)
     _exit(127);
 }
 
-static void start(lc_job *job)
+static void start(lc_pool_job *job)
 {
     pid_t parent = getpid();
     job->begun = now();
@@ -55,21 +55,21 @@ static void start(lc_job *job)
         setpgid(job->pid, job->pid);
 }
 
-static void kill_group(const lc_job *job, int number)
+static void kill_group(const lc_pool_job *job, int number)
 {
     kill(-job->pid, number);
     kill(job->pid, number); /* should it not have its group yet */
 }
 
 /* 1 when it has ended; it keeps its number until it is waited for. */
-static int has_ended(const lc_job *job)
+static int has_ended(const lc_pool_job *job)
 {
     siginfo_t info = {0};
     return job->pid <= 0 || waitid(P_PID, (id_t)job->pid, &info, WEXITED | WNOHANG | WNOWAIT) != 0 || info.si_pid != 0;
 }
 
 /* 1 when it is over. */
-static int look_after(lc_job *job)
+static int look_after(lc_pool_job *job)
 {
     int status = 0;
     job->took = now() - job->begun;
@@ -91,7 +91,7 @@ static int look_after(lc_job *job)
     return 1;
 }
 
-static void kill_all(lc_job *jobs, int count)
+static void kill_all(lc_pool_job *jobs, int count)
 {
     for (int i = 0; i < count; ++i)
         if (jobs[i].pid > 0) {
@@ -101,7 +101,7 @@ static void kill_all(lc_job *jobs, int count)
         }
 }
 
-lc_status lc_pool_run(lc_job *jobs, int count, int at_once, lc_status (*on_end)(lc_job *job, lc_error *err),
+lc_status lc_pool_run(lc_pool_job *jobs, int count, int at_once, lc_status (*on_end)(lc_pool_job *job, lc_error *err),
                       lc_error *err)
 {
     const struct timespec pause = {0, 5000000};

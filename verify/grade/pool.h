@@ -10,7 +10,7 @@
 
 #include "core/host.h"
 
-typedef struct lc_job {
+typedef struct lc_pool_job {
     int (*run)(void *user);   /* in a process of its own, whose exit status it returns; or NULL, and then */
     const char *const *words; /* a program's path and its arguments, to a NULL */
     const char *log;          /* file for what it prints; NULL: nobody listens */
@@ -24,12 +24,12 @@ typedef struct lc_job {
     /* The pool's own. */
     pid_t pid;
     double begun;
-} lc_job;
+} lc_pool_job;
 
 /* Runs the jobs in their order, at most `at_once` at a time, and calls `on_end` after each, in the order in which they
  * end. One that is late gets SIGTERM, two seconds later SIGKILL. What `on_end` returns ends the run where it is not LC_OK: the
  * jobs that still run are killed. The caller has one thread. */
-lc_status lc_pool_run(lc_job *jobs, int count, int at_once, lc_status (*on_end)(lc_job *job, lc_error *err),
+lc_status lc_pool_run(lc_pool_job *jobs, int count, int at_once, lc_status (*on_end)(lc_pool_job *job, lc_error *err),
                       lc_error *err);
 
 #endif

@@ -12,6 +12,8 @@
 #include <unistd.h>
 
 #include "verify/grade/formats.h"
+#include "verify/grade/metadata.h"
+#include "verify/grade/public.h"
 #include "verify/tests/xml_help.h"
 
 /* ---- specifications ------------------------------------------------------------------------------------------------ */
@@ -62,7 +64,8 @@ static const key own_test[] = {
     {"code", 's', 1, "|AC|WA|RTE|TLE|MLE|OLE|IR|IE|CE|", NULL}, {"visibility", 's', 1, SHOWN, NULL},
     {"points", '0', 1, NULL, NULL}, {"max_points", 'n', 1, NULL, NULL}, {"because", 's', 1, NULL, NULL},
     {"withheld", 's', 1, NULL, NULL}, {"scene", 's', 0, NULL, NULL}, {"seed", 's', 0, NULL, NULL},
-    {"sentence_id", 's', 0, NULL, NULL}, {"sentence", 's', 0, NULL, NULL}, {"hint", 's', 0, NULL, NULL},
+    {"sentence_id", 's', 0, NULL, NULL}, {"sentence", 's', 0, NULL, NULL}, {"hint", 's', 1, NULL, NULL},
+    {"shown", 's', 1, NULL, NULL},
     {"reproduce", 's', 0, NULL, NULL}, {"measured", 'o', 0, NULL, NULL}, {"seconds", '0', 0, NULL, NULL},
     {"cpu_seconds", '0', 0, NULL, NULL}, {"pictures", 't', 0, NULL, NULL}, {NULL, 0, 0, NULL, NULL}};
 static const key own[] = {
@@ -163,7 +166,7 @@ static void fill(lc_grade_result *r)
     strcpy(t->withheld, "Shown after the due date.");
     strcpy(t->sentence, "SECRET");
     strcpy(t->reproduce, "SECRET");
-    strcpy(t->hint, "SECRET");
+    strcpy(t->shown, "Shown wrong.");
     strcpy(t->scene, "SECRET");
     r->points = 14;
     r->most_points = 70;
@@ -213,7 +216,7 @@ static const char *word(json_t *o, const char *name) { return json_string_value(
 
 START_TEST(test_formats_own)
 {
-    static const char *const shown[] = {"scene", "sentence", "reproduce", "hint", "measured", "pictures"};
+    static const char *const shown[] = {"scene", "sentence", "reproduce", "measured", "pictures"};
     lc_grade_result r;
     fill(&r);
     json_t *o = read_json(write_result(&r, "json", 0));
@@ -226,7 +229,7 @@ START_TEST(test_formats_own)
     json_t *measured = json_object_get(at(o, 1), "measured"), *interval = json_object_get(measured, "interval");
     ck_assert(json_is_null(json_object_get(measured, "expected")) && json_is_null(json_object_get(measured, "margin_shown")));
     ck_assert(json_array_size(interval) == 2 && json_is_null(json_array_get(interval, 0)) && json_is_null(json_array_get(interval, 1)));
-    for (int i = 0; i < 6; ++i) {
+    for (int i = 0; i < 5; ++i) {
         ck_assert_msg(json_object_get(at(o, 1), shown[i]) != NULL, "%s", shown[i]);
         ck_assert_msg(json_object_get(at(o, 6), shown[i]) == NULL, "%s", shown[i]);
     }
@@ -278,7 +281,8 @@ START_TEST(test_formats_prairielearn)
     ck_assert_double_eq_tol(number(o, "score"), 0.1, 1e-12);
     ck_assert(json_is_true(json_object_get(o, "gradable")));
     ck_assert_ptr_null(strstr(text, "SECRET"));
-    ck_assert_str_eq(word(at(o, 6), "output"), "Shown after the due date.");
+    ck_assert_ptr_nonnull(strstr(word(at(o, 6), "output"), "Shown wrong."));
+    ck_assert_ptr_nonnull(strstr(word(at(o, 6), "output"), "Shown after the due date."));
     json_decref(o);
     fill_ungradable(&r);
     o = read_json(write_result(&r, "prairielearn", 0));
@@ -385,6 +389,71 @@ START_TEST(test_formats_save)
 }
 END_TEST
 
+/* ---- what Gradescope says of a hand-in, and what students are given ----------------------------------------------------- */
+
+static char path[64];
+
+static void write_file(const char *content)
+{
+    strcpy(path, "/tmp/lightcheck-formats-XXXXXX");
+    int fd = mkstemp(path);
+    ck_assert_int_ge(fd, 0);
+    ck_assert_int_eq(write(fd, content, strlen(content)), (ssize_t)strlen(content));
+    close(fd);
+}
+
+START_TEST(test_formats_metadata)
+{
+    int64_t when = 0;
+    int attempt = 0;
+    lc_error err;
+    write_file("{\"id\": 1, \"created_at\": \"2018-07-01T14:22:32.365935-07:00\", \"previous_submissions\": ["
+               "{\"score\": 0.0}, {\"results\": {\"extra_data\": {\"code\": \"CE\"}}}, {\"autograder_error\": true},"
+               "{\"results\": {\"extra_data\": {\"code\": \"WA\"}}}, {\"results\": null}]}");
+    ck_assert_msg(lc_metadata_read(&when, &attempt, path, &err) == LC_OK, "%s", err.text);
+    ck_assert_int_eq(when, 1530480152);
+    ck_assert_int_eq(attempt, 4); /* two were not graded */
+    unlink(path);
+    write_file("{\"created_at\": \"2018-07-01T14:22:32Z\"}");
+    ck_assert_int_eq(lc_metadata_read(&when, &attempt, path, &err), LC_OK);
+    ck_assert_int_eq(when, 1530454952);
+    ck_assert_int_eq(attempt, 1);
+    unlink(path);
+    write_file("{\"created_at\": \"yesterday\"}");
+    ck_assert_int_eq(lc_metadata_read(&when, &attempt, path, &err), LC_BAD_INPUT);
+    unlink(path);
+    ck_assert_int_eq(lc_metadata_read(&when, &attempt, path, &err), LC_BAD_INPUT);
+}
+END_TEST
+
+START_TEST(test_formats_public)
+{
+    lc_error err;
+    write_file("{\"title\": \"T\", \"solutions\": [\"path\"], \"mutants_of\": [\"path\"], \"tests\": ["
+               "{\"name\": \"a\"}, {\"name\": \"b\", \"visibility\": \"hidden\", \"scenes\": [\"SECRET\"]},"
+               "{\"name\": \"c\", \"visibility\": \"visible\", \"requires\": [\"a\", \"b\", \"d\"]},"
+               "{\"name\": \"d\", \"visibility\": \"after_due_date\"}]}");
+    FILE *out = tmpfile();
+    ck_assert_msg(lc_assignment_write_public(out, path, &err) == LC_OK, "%s", err.text);
+    rewind(out);
+    text[fread(text, 1, sizeof text - 1, out)] = 0;
+    fclose(out);
+    unlink(path);
+    json_t *o = read_json(text), *expected = read_json("{\"title\": \"T\", \"tests\": [{\"name\": \"a\"},"
+                                                       "{\"name\": \"c\", \"visibility\": \"visible\", \"requires\": [\"a\"]}]}");
+    ck_assert_msg(json_equal(o, expected), "%s", text);
+    json_decref(o);
+    json_decref(expected);
+    write_file("{\"tests\": 3}");
+    ck_assert_int_eq(lc_assignment_write_public(stdout, path, &err), LC_BAD_INPUT);
+    unlink(path);
+    write_file("{\n\"tests\": [}");
+    ck_assert_int_eq(lc_assignment_write_public(stdout, path, &err), LC_BAD_INPUT);
+    ck_assert_ptr_nonnull(strstr(err.text, ":2: "));
+    unlink(path);
+}
+END_TEST
+
 Suite *lc_suite_formats(void)
 {
     Suite *suite = suite_create("formats");
@@ -395,6 +464,8 @@ Suite *lc_suite_formats(void)
     tcase_add_test(tests, test_formats_classroom);
     tcase_add_test(tests, test_formats_junit);
     tcase_add_test(tests, test_formats_save);
+    tcase_add_test(tests, test_formats_metadata);
+    tcase_add_test(tests, test_formats_public);
     suite_add_tcase(suite, tests);
     return suite;
 }

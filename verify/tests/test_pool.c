@@ -13,21 +13,21 @@
 
 static int order[16], ended;
 
-static lc_status note(lc_job *job, lc_error *err)
+static lc_status note(lc_pool_job *job, lc_error *err)
 {
     (void)err;
     order[ended++] = (int)(size_t)job->user;
     return LC_OK;
 }
 
-static lc_status refuse(lc_job *job, lc_error *err)
+static lc_status refuse(lc_pool_job *job, lc_error *err)
 {
     return lc_fail(err, LC_FAULT, "enough after %d", (int)(size_t)job->user);
 }
 
-static lc_job shell(const char *const *words, double seconds, size_t number)
+static lc_pool_job shell(const char *const *words, double seconds, size_t number)
 {
-    const lc_job job = {.words = words, .seconds = seconds, .user = (void *)number};
+    const lc_pool_job job = {.words = words, .seconds = seconds, .user = (void *)number};
     return job;
 }
 
@@ -37,7 +37,7 @@ START_TEST(test_pool_stuck)
     static const char *const stuck[] = {"/bin/sh", "-c", "trap '' TERM; sleep 1000 & while :; do sleep 1000; done", NULL};
     static const char *const quick[] = {"/bin/sh", "-c", "exit 3", NULL}, *const dies[] = {"/bin/sh", "-c", "kill -9 $$", NULL};
     static const char *const absent[] = {"/absent", NULL};
-    lc_job jobs[] = {shell(stuck, 0.3, 0), shell(quick, 60, 1), shell(dies, 60, 2), shell(absent, 60, 3), shell(quick, 60, 4)};
+    lc_pool_job jobs[] = {shell(stuck, 0.3, 0), shell(quick, 60, 1), shell(dies, 60, 2), shell(absent, 60, 3), shell(quick, 60, 4)};
     lc_error err;
     ended = 0;
     ck_assert_int_eq(lc_pool_run(jobs, 5, 2, note, &err), LC_OK);
@@ -71,7 +71,7 @@ START_TEST(test_pool_log)
     char path[] = "/tmp/lightcheck-pool-XXXXXX", text[64] = "";
     int fd = mkstemp(path), child = 0;
     static const char *const words[] = {"/bin/sh", "-c", "sleep 1000 & echo $!; echo said >&2", NULL};
-    lc_job job = shell(words, 60, 0);
+    lc_pool_job job = shell(words, 60, 0);
     lc_error err;
     job.log = path;
     ended = 0;
@@ -99,7 +99,7 @@ START_TEST(test_pool_function)
 {
     char path[] = "/tmp/lightcheck-pool-XXXXXX", text[64] = "";
     int fd = mkstemp(path);
-    lc_job job = {.run = work, .log = path, .seconds = 60, .user = (void *)2};
+    lc_pool_job job = {.run = work, .log = path, .seconds = 60, .user = (void *)2};
     lc_error err;
     printf(" "); /* stays in the buffer */
     ended = 0;
@@ -116,7 +116,7 @@ END_TEST
 START_TEST(test_pool_refused)
 {
     static const char *const quick[] = {"/bin/sh", "-c", "exit 0", NULL}, *const slow[] = {"/bin/sh", "-c", "sleep 1000", NULL};
-    lc_job jobs[] = {shell(slow, 1000, 0), shell(quick, 60, 1), shell(slow, 1000, 2)};
+    lc_pool_job jobs[] = {shell(slow, 1000, 0), shell(quick, 60, 1), shell(slow, 1000, 2)};
     lc_error err;
     ck_assert_int_eq(lc_pool_run(jobs, 3, 2, refuse, &err), LC_FAULT);
     ck_assert_str_eq(err.text, "enough after 1");

@@ -51,6 +51,7 @@ Suite *lc_suite_handins(void);
 Suite *lc_suite_formats(void);
 Suite *lc_suite_assignment(void);
 Suite *lc_suite_grade(void);
+Suite *lc_suite_class(void);
 Suite *lc_suite_sensitivity(void);
 Suite *lc_suite_nee(void);
 Suite *lc_suite_metamorphic(void);
