@@ -11,6 +11,7 @@
 #include "verify/grade/handins.h"
 #include "verify/grade/metadata.h"
 #include "verify/grade/plugin.h"
+#include "verify/renderers/adapter.h"
 
 typedef struct grade_arguments {
     const char *assignment, *seed, *only, *report, *student, *format, *out, *metadata;
@@ -64,6 +65,7 @@ static lc_status grade_one(const grade_arguments *a, const lc_assignment *assign
                            lc_error *err)
 {
     lc_handins handins = {NULL, 0};
+    lc_adapter adapter;
     const char *file = word;
     lc_grade_result *result = malloc(sizeof *result);
     lc_status status = result ? LC_OK : lc_fail(err, LC_FAULT, "out of memory for a grading");
@@ -77,6 +79,9 @@ static lc_status grade_one(const grade_arguments *a, const lc_assignment *assign
     if (status == LC_OK && lc_cli_is_folder(word)) {
         status = lc_handins_find_one(&handins, word, err);
         file = status == LC_OK ? handins.items[0].path : NULL;
+    } else if (status == LC_OK && a->class.adapters) {
+        status = lc_adapter_open(&adapter, word, 600, err);
+        options->adapter = &adapter;
     } else if (status == LC_OK && !lc_is_plugin(word)) { /* one of ours, which needs no jail: to try an assignment out */
         status = lc_cli_find_estimator(&options->estimator, word, err);
     }
@@ -144,6 +149,7 @@ static int run(const lc_command *self, int argc, char **argv)
         {0, "roster", LC_OPT_STRING, &a.class.roster, "FILE.csv", "of a class: who is in it; student_id,last_name,first_name,email,file", 0, 0, NULL},
         {0, "shard", LC_OPT_STRING, &a.class.shard, "I/N", "of a class: every N-th hand-in from the I-th on, 0 <= I < N; with --seed", 0, 0, NULL},
         {0, "solutions", LC_OPT_STRING, &a.class.solutions, "DIR", "of a class: compared with these, too; default estimators/", 0, 0, NULL},
+        {0, "adapters", LC_OPT_FLAG, &a.class.adapters, NULL, "FILE, or an executable `adapter*` in a hand-in's folder, is graded by its images, NOT locked up", 0, 0, NULL},
         {0, "metadata", LC_OPT_STRING, &a.metadata, "FILE.json", "Gradescope's: attempt and moment; a folder is then one hand-in", 0, 0, NULL},
         {0, "only", LC_OPT_STRING, &a.only, "TEST", "only this test, without those that it requires", 0, 0, NULL},
         {0, "report", LC_OPT_STRING, &a.report, "DIR", "writes three pictures a test there", 0, 0, NULL},

@@ -83,7 +83,7 @@ lc_status lc_cli_grade_class(const lc_cli_class *self, const lc_strings *words, 
         o.grade.threads = 1;
     lc_status status = read_options(&o, self, err);
     if (status == LC_OK)
-        status = lc_handins_find(&handins, words->items, words->count, err);
+        status = lc_handins_find(&handins, words->items, words->count, self->adapters, err);
     if (status == LC_OK && self->resume)
         lc_class_read_seed(&o.grade.seed, o.folder);
     if (status == LC_OK && self->roster)

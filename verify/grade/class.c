@@ -12,6 +12,7 @@
 #include "verify/grade/class_c.h"
 #include "verify/grade/formats.h"
 #include "verify/grade/pool.h"
+#include "verify/renderers/adapter.h"
 
 /* What a process of its own does. */
 typedef struct task {
@@ -91,8 +92,14 @@ static int grade_one(void *user)
     lc_error err = {""};
     lc_grade_options options = c->options->grade;
     lc_grade_result *result = calloc(1, sizeof *result);
-    if (!result)
-        return LC_FAULT;
+    lc_adapter *adapter = calloc(1, sizeof *adapter);
+    if (!result || !adapter)
+        return LC_FAULT; /* the process ends */
+    if (t->row->handin->is_adapter) {
+        if (lc_adapter_open(adapter, t->row->handin->path, c->options->seconds, &err) != LC_OK)
+            return (int)save_other(c, t->row, 0, err.text, &err);
+        options.adapter = adapter;
+    }
     options.seed = c->seed;
     options.on_test = on_test;
     options.user = t;
@@ -106,6 +113,7 @@ static int grade_one(void *user)
     } else {
         status = save_other(c, t->row, 1, err.text, &err);
     }
+    free(adapter);
     free(result);
     return (int)status;
 }

@@ -195,7 +195,8 @@ static lc_status judge_test(lc_grading *g, int i, lc_error *err)
     if (g->jail)
         lc_jail_set_cpu(g->jail, cpu);
     lc_error why = {""};
-    lc_status status = job->test->kind == LC_KIND_DESCRIPTOR ? grade_descriptor(g, out)
+    lc_status status = g->options->adapter                    ? lc_grade_images(g, job, out, &why)
+                       : job->test->kind == LC_KIND_DESCRIPTOR ? grade_descriptor(g, out)
                        : job->test->kind == LC_KIND_FINITE   ? lc_grade_finite(g, job, out, &why)
                        : job->test->kind == LC_KIND_VARIANCE ? lc_grade_variance(g, job, out, &why)
                                                              : lc_grade_claims(g, job, out, &why);
@@ -271,8 +272,8 @@ static void start_test(lc_grading *g, lc_test_result *out, const lc_test *test, 
              : test->kind == LC_KIND_VARIANCE ? "variance"
                                               : test->check);
     withhold(out, g, test->visibility == LC_AFTER_DUE ? a->due : a->published, is_now);
-    snprintf(out->reproduce, sizeof out->reproduce, "%s grade %.200s -a %.200s --seed %llu --only %s", g->options->program, g->path,
-             a->given, (unsigned long long)g->options->seed, test->name);
+    snprintf(out->reproduce, sizeof out->reproduce, "%s grade %.200s%s -a %.200s --seed %llu --only %s", g->options->program, g->path,
+             g->options->adapter ? " --adapters" : "", a->given, (unsigned long long)g->options->seed, test->name);
 }
 
 static void set_late(lc_grading *g)
@@ -361,6 +362,11 @@ static lc_status open_file(lc_grading *g, int *refused, lc_error *err)
     lc_jail_verdict why = {LC_JAIL_AC, "", 0};
     lc_error text = {""};
     *refused = 0;
+    if (g->options->adapter) {
+        g->estimator = &g->options->adapter->estimator;
+        snprintf(g->result->estimator, sizeof g->result->estimator, "%s", g->estimator->name);
+        return LC_OK;
+    }
     if (!g->options->estimator && access(g->path, R_OK) != 0)
         return lc_fail(err, LC_BAD_INPUT, "%s: %s", g->path, strerror(errno));
     lc_status status = g->options->estimator || g->options->is_open ? open_in_process(g, &why, &text)
@@ -440,7 +446,7 @@ static lc_status judge_all(lc_grading *g, lc_error *err)
         if (status == LC_OK)
             status = tell(g, err);
     }
-    return status == LC_OK ? give_hints(g, err) : status;
+    return status == LC_OK && !g->options->adapter ? give_hints(g, err) : status;
 }
 
 lc_status lc_grade_file(lc_grade_result *out, const lc_assignment *assignment, const char *path,

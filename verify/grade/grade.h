@@ -21,6 +21,7 @@ typedef struct lc_grade_options {
     time_t submitted;         /* for the late policy; 0: not known, never late */
     time_t now;               /* what is withheld until a date; 0: the clock's */
     const lc_estimator *estimator; /* graded instead of a file: for the check of an assignment; NULL: the file */
+    const struct lc_adapter *adapter; /* graded instead of a file, by its images, without a jail: grade_images.c; NULL: the file */
     lc_load_scene_fn *load;   /* scenes by name */
     /* After every test, and once before the first: write the result now, atomically. `result->done` tests are judged. NULL: nobody asks. An error
      * ends the grading, and is returned. */

@@ -45,6 +45,9 @@ lc_status lc_grade_finite(lc_grading *g, const lc_job *job, lc_test_result *out,
 lc_status lc_grade_claims(lc_grading *g, const lc_job *job, lc_test_result *out, lc_error *err);
 lc_status lc_grade_variance(lc_grading *g, const lc_job *job, lc_test_result *out, lc_error *err);
 
+/* The same of any kind, for an adapter; in grade_images.c. What images cannot tell counts for nothing: no points are asked for. */
+lc_status lc_grade_images(lc_grading *g, const lc_job *job, lc_test_result *out, lc_error *err);
+
 /* The share of its points that a decided row earns, and the margin that was shown for it. */
 double lc_grade_share(double *margin_shown, const lc_row *row);
 

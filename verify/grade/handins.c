@@ -40,7 +40,7 @@ static lc_status add(lc_handins *out, const char *name, const char *path, const 
         return no_memory(err);
     out->items = items;
     lc_handin *h = &items[out->count++];
-    *h = (lc_handin){copy_text(name), path ? copy_text(path) : NULL, path ? NULL : copy_text(why), when};
+    *h = (lc_handin){copy_text(name), path ? copy_text(path) : NULL, path ? NULL : copy_text(why), 0, when};
     return h->name && (path ? h->path : h->why) ? LC_OK : no_memory(err);
 }
 
@@ -50,7 +50,14 @@ typedef struct search {
     char path[PATH_SIZE]; /* of the first source file */
     char names[256];      /* of all */
     int count;
+    int adapters;              /* 1: these are looked for, too */
+    char adapter[PATH_SIZE];
 } search;
+
+static int is_adapter(const char *name, const struct stat *info)
+{
+    return strncmp(name, "adapter", 7) == 0 && (name[7] == 0 || name[7] == '.') && (info->st_mode & S_IXUSR);
+}
 
 static void look_into(search *s, const char *folder, int depth)
 {
@@ -65,6 +72,8 @@ static void look_into(search *s, const char *folder, int depth)
             continue;
         if (S_ISDIR(info.st_mode))
             look_into(s, path, depth + 1);
+        if (s->adapters && S_ISREG(info.st_mode) && is_adapter(e->d_name, &info))
+            strcpy(s->adapter, path);
         if (!S_ISREG(info.st_mode) || !lc_is_source(e->d_name))
             continue;
         size_t used = strlen(s->names);
@@ -75,27 +84,32 @@ static void look_into(search *s, const char *folder, int depth)
     closedir(dir);
 }
 
-static lc_status add_folder(lc_handins *out, const char *name, const char *folder, time_t when, lc_error *err)
+static lc_status add_folder(lc_handins *out, const char *name, const char *folder, time_t when, int adapters, lc_error *err)
 {
     char why[512];
     search *s = calloc(1, sizeof *s);
     if (!s)
         return no_memory(err);
+    s->adapters = adapters;
     look_into(s, folder, 0);
+    if (s->adapter[0])
+        strcpy(s->path, s->adapter);
     if (s->count == 0)
         snprintf(why, sizeof why, "there is no source file (.c, .cc, .cpp, .cxx) in what was handed in");
     else
         snprintf(why, sizeof why, "expected one source file, and found %d: %s", s->count, s->names);
     struct stat info;
-    int one = s->count == 1 && lstat(s->path, &info) == 0;
+    int one = (s->adapter[0] || s->count == 1) && lstat(s->path, &info) == 0;
     lc_status status = add(out, name, one ? s->path : NULL, why, one ? info.st_mtime : when, err);
+    if (status == LC_OK)
+        out->items[out->count - 1].is_adapter = s->adapter[0] != 0;
     free(s);
     return status;
 }
 
 /* ---- a folder of hand-ins --------------------------------------------------------------------------------------------- */
 
-static lc_status add_all(lc_handins *out, const char *folder, lc_error *err)
+static lc_status add_all(lc_handins *out, const char *folder, int adapters, lc_error *err)
 {
     lc_status status = LC_OK;
     DIR *dir = opendir(folder);
@@ -110,7 +124,7 @@ static lc_status add_all(lc_handins *out, const char *folder, lc_error *err)
         if (S_ISREG(info.st_mode) && lc_is_source(e->d_name))
             status = add(out, e->d_name, path, NULL, info.st_mtime, err);
         else if (S_ISDIR(info.st_mode))
-            status = add_folder(out, e->d_name, path, info.st_mtime, err);
+            status = add_folder(out, e->d_name, path, info.st_mtime, adapters, err);
     }
     closedir(dir);
     return status;
@@ -122,7 +136,7 @@ static int by_name(const void *a, const void *b)
     return strcmp(x->name, y->name);
 }
 
-lc_status lc_handins_find(lc_handins *out, const char *const *paths, int count, lc_error *err)
+lc_status lc_handins_find(lc_handins *out, const char *const *paths, int count, int adapters, lc_error *err)
 {
     lc_status status = LC_OK;
     *out = (lc_handins){NULL, 0};
@@ -133,7 +147,7 @@ lc_status lc_handins_find(lc_handins *out, const char *const *paths, int count, 
         if (stat(paths[i], &info) != 0)
             status = lc_fail(err, LC_BAD_INPUT, "%s: cannot read: %s", paths[i], strerror(errno));
         else if (S_ISDIR(info.st_mode))
-            status = add_all(out, paths[i], err);
+            status = add_all(out, paths[i], adapters, err);
         else if (lc_is_source(paths[i]))
             status = add(out, name, paths[i], NULL, info.st_mtime, err);
         else
@@ -160,7 +174,7 @@ lc_status lc_handins_find_one(lc_handins *out, const char *folder, lc_error *err
     name_of(name, sizeof name, folder);
     if (stat(folder, &info) != 0 || !S_ISDIR(info.st_mode))
         return lc_fail(err, LC_BAD_INPUT, "%s: expected a folder", folder);
-    lc_status status = add_folder(out, name, folder, info.st_mtime, err);
+    lc_status status = add_folder(out, name, folder, info.st_mtime, 0, err);
     if (status != LC_OK)
         lc_handins_release(out);
     return status;

@@ -18,6 +18,7 @@ case $results in
 '' | /*) ;;
 *) results=$PWD/$results ;;
 esac
+project=$PWD
 handins=$PWD/verify/tests/handins
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
@@ -143,7 +144,7 @@ score() { # of a student, in the folder's results
 }
 mkdir few
 for id in u000 u002 u005; do
-    ls -d class/$id* | xargs -I{} cp -R {} few
+    ls -d class/$id* | xargs -I{} cp -pR {} few
 done
 for shard in 0 1; do
     "$program" grade few -a "$assignment" --seed 7 --shard $shard/2 --roster roster.csv -o again >out 2>err || wrong "shard $shard: $(cat err)"
@@ -155,10 +156,45 @@ done
 [ -s again/gradebook.csv ] || wrong 'no gradebook of the shards'
 
 if [ -n "$results" ]; then
+    cp grades/class.txt table
+fi
+
+# ---- a file that was handed in anew is graded anew, and only that one ----
+
+cp "$handins/all_lights.c" class/u002.c
+"$program" grade "$@" --resume >out 2>err || wrong "a file that has changed: $(cat err)"
+[ "$(grep -c '^\[' err)" = 1 ] && grep -q '^\[1/1\] .* AC ' err || wrong "not one file graded anew: $(cat err)"
+awk -F, '$4 == "u002" { exit $(NF - 1) != $NF }' grades/gradebook.csv || wrong 'the gradebook has the old score'
+sed 's/"margin": 0.05/"margin": 0.04/' "$project/verify/tests/class_small.json" >other.json
+status=0
+"$program" grade class -a other.json -o grades --resume >out 2>err || status=$?
+[ $status = 2 ] && grep -q 'results of another assignment' err || wrong 'results of another assignment were taken'
+
+# ---- in any language: adapters, which are graded where that is asked for ----
+
+make_adapter() { # NAME, and what follows --describe
+    mkdir -p "adapters/$1"
+    printf '#!/bin/sh\nif [ "$1" = --describe ]; then\n    printf "lobes=diffuse\\nemitters=area,point,directional\\n"\n    exit 0\nfi\n%s\n' "$2" \
+        >"adapters/$1/adapter.sh"
+    chmod +x "adapters/$1/adapter.sh"
+}
+render() { echo "exec $program render \"\$1\" -e $1 --size \"\$2x\$3\" -s \"\$4\" --seed \"\$5\" --bounces \"\$6\" -o \"\$7\""; }
+make_adapter right "$(render light_direct)"
+make_adapter wrong "$(render light_no_cosine)"
+make_adapter dies 'exit 3'
+small=$project/verify/tests/class_small.json
+"$program" grade adapters -a "$small" -j 2 --seed 1 -o without >out 2>err || wrong "adapters: $(cat err)"
+"$program" grade adapters -a "$small" -j 2 --seed 1 --adapters -o with >out 2>err || wrong "adapters: $(cat err)"
+printf '%s\n' 'dies CE none' 'right CE none' 'wrong CE none' 'dies RTE less' 'right AC full' 'wrong WA less' >expected
+awk '$4 == "of" { print $1, $2, $3 == "-" ? "none" : $3 == $5 ? "full" : "less" }' without/class.txt with/class.txt >got
+diff expected got >difference || wrong "adapters (expected <, got >):
+$(cat difference)"
+
+if [ -n "$results" ]; then
     {
         printf '# A class of %d hand-ins\n\nMade by `make class`. %s\n\n```text\n' "$count" \
             "The grader was killed (SIGKILL) when $killed_at results had been begun, and resumed; $took s in all, two processes at once."
-        cat grades/class.txt
+        cat table
         printf '```\n'
     } >"$results"
 fi

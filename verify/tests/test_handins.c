@@ -41,7 +41,7 @@ START_TEST(test_handins_find)
     shell("touch b.c 'z .cpp' roster.csv .hidden.c; mkdir -p ann/src/deep dup none .git; touch ann/src/deep/x.c ann/a.txt ann/.y.c "
           "dup/1.c dup/2.cc none/a.py .git/g.c; ln -s ../b.c none/link.c; ln -s b.c link.c; ln -s ann folder; "
           "touch -d @1000 ann/src/deep/x.c");
-    ck_assert_msg(lc_handins_find(&h, &path, 1, &err) == LC_OK, "%s", err.text);
+    ck_assert_msg(lc_handins_find(&h, &path, 1, 0, &err) == LC_OK, "%s", err.text);
     ck_assert_int_eq(h.count, 5);
     for (int i = 0; i < 5; ++i)
         ck_assert_str_eq(h.items[i].name, names[i]);
@@ -59,11 +59,29 @@ START_TEST(test_handins_find)
 }
 END_TEST
 
+/* Only where it is asked for: an adapter runs with all rights of who grades. */
+START_TEST(test_handins_adapter)
+{
+    lc_handins h;
+    lc_error err;
+    const char *path = folder;
+    shell("mkdir -p ann/src bob; touch ann/src/x.c ann/src/y.c ann/adapter.py bob/adapter bob/b.c; chmod +x ann/adapter.py");
+    ck_assert_int_eq(lc_handins_find(&h, &path, 1, 1, &err), LC_OK);
+    ck_assert_int_eq(h.count, 2);
+    ck_assert_str_eq(h.items[0].path, at("ann/adapter.py"));
+    ck_assert(h.items[0].is_adapter && !h.items[1].is_adapter); /* that one is not executable */
+    lc_handins_release(&h);
+    ck_assert_int_eq(lc_handins_find(&h, &path, 1, 0, &err), LC_OK);
+    ck_assert_ptr_null(h.items[0].path);
+    lc_handins_release(&h);
+}
+END_TEST
+
 static void refuses(const char *const *paths, int count, const char *text)
 {
     lc_handins h;
     lc_error err;
-    ck_assert_int_eq(lc_handins_find(&h, paths, count, &err), LC_BAD_INPUT);
+    ck_assert_int_eq(lc_handins_find(&h, paths, count, 0, &err), LC_BAD_INPUT);
     ck_assert_msg(strstr(err.text, text) != NULL, "'%s' is not in '%s'", text, err.text);
     ck_assert_int_eq(h.count, 0);
 }
@@ -87,6 +105,7 @@ Suite *lc_suite_handins(void)
     TCase *tests = tcase_create("handins");
     tcase_add_checked_fixture(tests, set_up, tear_down);
     tcase_add_test(tests, test_handins_find);
+    tcase_add_test(tests, test_handins_adapter);
     tcase_add_test(tests, test_handins_errors);
     suite_add_tcase(suite, tests);
     return suite;
