@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "cli/commands.h"
+#include "verify/grade/public.h"
 #include "verify/grade/rehearse.h"
 #include "verify/grade/sentences.h"
 
@@ -56,6 +57,17 @@ static lc_status check(const assignment_arguments *a, const char *name, lc_error
     return status;
 }
 
+/* It is read whole first: what is wrong in it is not for students to find. */
+static lc_status print_public(const char *name, lc_error *err)
+{
+    lc_assignment *assignment = malloc(sizeof *assignment);
+    lc_status status = assignment ? lc_assignment_read(assignment, name, err) : lc_fail(err, LC_FAULT, "out of memory for an assignment");
+    if (status == LC_OK)
+        status = lc_assignment_write_public(stdout, assignment->path, err);
+    free(assignment);
+    return status;
+}
+
 static lc_status run_verb(void *user, const lc_strings *rest, lc_error *err)
 {
     if (strcmp(rest->items[0], "sentences") == 0 && rest->count == 1) {
@@ -64,7 +76,9 @@ static lc_status run_verb(void *user, const lc_strings *rest, lc_error *err)
     }
     if (strcmp(rest->items[0], "check") == 0 && rest->count == 2)
         return check(user, rest->items[1], err);
-    return lc_fail(err, LC_BAD_INPUT, "expected `check NAME|FILE.json` or `sentences`");
+    if (strcmp(rest->items[0], "public") == 0 && rest->count == 2)
+        return print_public(rest->items[1], err);
+    return lc_fail(err, LC_BAD_INPUT, "expected `check NAME|FILE.json`, `public NAME|FILE.json` or `sentences`");
 }
 
 static int run(const lc_command *self, int argc, char **argv)
@@ -75,14 +89,14 @@ static int run(const lc_command *self, int argc, char **argv)
         {0, "threads", LC_OPT_INT, &a.threads, "N", "default: one a core; changes only the time", 1, 256, NULL},
         {0, NULL, LC_OPT_FLAG, NULL, NULL, NULL, 0, 0, NULL},
     };
-    return lc_command_run(self, options, argc, argv, 1, 2, "expected `check NAME|FILE.json` or `sentences`", run_verb, &a);
+    return lc_command_run(self, options, argc, argv, 1, 2, "expected `check NAME|FILE.json`, `public NAME|FILE.json` or `sentences`", run_verb, &a);
 }
 
 const lc_command lc_command_assignment = {
     "assignment",
-    "check NAME|FILE.json [--seed N|random] | sentences",
+    "check NAME|FILE.json [--seed N|random] | public NAME|FILE.json | sentences",
     "tries an assignment out before it is published",
     "`check` grades the right solutions and the mutants that the assignment names: exit status 0 when the former get all\n"
-    "points and each of the latter loses some, else 1. `sentences` prints what `grade` says, to be translated.\n",
+    "points and each of the latter loses some, else 1. `public` prints it without its hidden tests, for students. `sentences` prints what `grade` says, to be translated.\n",
     run,
 };

@@ -18,7 +18,7 @@ wrong() {
 }
 
 # Statements of the solutions and the mutants that stand in no file which students get anyway.
-cat src/core/lightcheck.h estimators/template.c | sed 's/^ *//' >"$folder/public"
+cat src/core/lightcheck.h estimators/template.c docs/student.md | sed 's/^ *//' >"$folder/public"
 ls estimators/*.c verify/mutants/*.c | grep -v -e template.c -e registry.c | xargs cat |
     sed -n 's/^ *\(.\{20,\};\)$/\1/p' | grep -vxF -f "$folder/public" | sort -u >"$folder/solutions"
 [ "$(wc -l <"$folder/solutions")" -gt 200 ] || wrong 'found hardly a line of the solutions'
@@ -30,6 +30,8 @@ leaks() {
 }
 
 sh verify/grade/kit/make_kit.sh "$program" "$kit"
+grep -q '"visibility": "\(hidden\|after_[a-z_]*\)"' verify/assignments/light_direct.json || wrong 'no hidden test to be left out'
+! grep -rE '"visibility": "(hidden|after_[a-z_]*)"|"solutions"|"mutants_of"' "$kit/assignments" || wrong 'hidden tests in the kit'
 [ -z "$(leaks)" ] || wrong "solutions in $(leaks)"
 
 # A test that cannot fail is none.
@@ -51,7 +53,8 @@ works 0 new mine
 works 0 render cornell -e mine.c -s 1 --size 8x8 -o mine.png
 works 0 verify -e all_lights.c -c analytic --scene plane_disk
 works 1 verify -e no_cosine.c -c analytic --scene plane_disk
-works 0 verify -e all_lights.c -c analytic --scene plane_disk --jail
+works 0 grade all_lights.c -a light_direct
+works 1 grade no_cosine.c -a light_direct
 [ -x "$kit/setup.sh" ] && sh "$kit/setup.sh" --help >/dev/null || wrong 'setup.sh does not run'
 grep -q '^RUN /lightcheck/setup.sh$' "$kit/Dockerfile" || wrong 'the Dockerfile does not call setup.sh'
 
