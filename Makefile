@@ -63,7 +63,7 @@ WORKER := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard src/core/*.c verify/grade/w
 PROOF := $(patsubst %.c,$(BUILD)/obj/%.o,$(filter-out %/calibrate.c %/power.c,$(wildcard verify/proof/*.c)))
 
 .PHONY: all check verify verify-table full-table pictures povray-reference mitsuba-table renderer-study lint asan-check \
-        calibrate power seeds few-seeds judge-mutants mutants bench needs fresh clean help
+        calibrate power seeds few-seeds judge-mutants mutants gradings bench needs fresh clean help
 all: $(BUILD)/lightcheck $(BUILD)/lightcheck-worker $(BUILD)/obj/estimators/template.o ## build the program
 
 # A plug-in finds the functions of lightcheck.h in the program, and no others.
@@ -170,6 +170,10 @@ bench: all ## how fast the tracer is on this machine: paths a second of one core
 mutants: all ## which checks kill which mutants, and that right variants pass: results/mutants.md
 	@sh verify/tests/mutants.sh $(BUILD)/lightcheck quick > $(BUILD)/mutants.md; status=$$?; \
 	    cp $(BUILD)/mutants.md results/mutants.md; exit $$status
+
+gradings: all ## right solutions of every assignment, graded 200 times: results/gradings.md (N=count; goes on where it ended)
+	@sh verify/tests/gradings.sh $(BUILD)/lightcheck $(BUILD)/gradings.log $(or $(N),200) > $(BUILD)/gradings.md; status=$$?; \
+	    cp $(BUILD)/gradings.md results/gradings.md; exit $$status
 
 needs: ## say what is missing, if anything is
 	@:

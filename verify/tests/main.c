@@ -16,7 +16,7 @@ static Suite *(*const suites[])(void) = {
     lc_suite_family,   lc_suite_convergence,    lc_suite_lecture,
     lc_suite_diagnose, lc_suite_scene_write,    lc_suite_adapter,
     lc_suite_plugin,   lc_suite_jail,
-    lc_suite_assignment, lc_suite_grade,
+    lc_suite_assignment, lc_suite_grade, lc_suite_rehearse,
 };
 
 int main(void)
