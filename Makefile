@@ -63,7 +63,7 @@ WORKER := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard src/core/*.c verify/grade/w
 PROOF := $(patsubst %.c,$(BUILD)/obj/%.o,$(filter-out %/calibrate.c %/power.c,$(wildcard verify/proof/*.c)))
 
 .PHONY: all check verify verify-table full-table pictures povray-reference mitsuba-table renderer-study lint asan-check \
-        calibrate power judge-mutants mutants bench student-kit needs fresh clean help
+        calibrate power seeds few-seeds judge-mutants mutants gradings bench student-kit needs fresh clean help
 all: $(BUILD)/lightcheck $(BUILD)/lightcheck-worker $(BUILD)/obj/estimators/template.o ## build the program
 
 # A plug-in finds the functions of lightcheck.h in the program, and no others.
@@ -158,6 +158,15 @@ calibrate: $(BUILD)/calibrate ## how often the judge decides wrongly: results/ca
 power: $(BUILD)/power ## samples that the judge needs, beside other programs' rules: results/power.md
 	$(BUILD)/power results/power.md
 
+seeds: SEEDS = 50
+seeds: SHARDS = 1
+seeds: all ## the quick suite with SEEDS=50 other seeds, each a minute; goes on where it was stopped: results/seeds.md
+	sh verify/proof/seeds.sh $(BUILD)/lightcheck $(BUILD)/seeds.txt $(SEEDS) $(SHARDS) > $(BUILD)/seeds.md; status=$$?; \
+	    cat $(BUILD)/seeds.md; [ $$status -gt 1 ] || [ $(SHARDS) != 1 ] || cp $(BUILD)/seeds.md results/seeds.md; exit $$status
+
+few-seeds: ## a handful of that: a fifth of the scenes with each of three seeds, in less than a minute
+	@$(MAKE) seeds SEEDS=3 SHARDS=5
+
 judge-mutants: ## wrong judges, each of which the tests must catch
 	@sh verify/tests/judge_mutants.sh
 
@@ -167,6 +176,10 @@ bench: all ## how fast the tracer is on this machine: paths a second of one core
 mutants: all ## which checks kill which mutants, and that right variants pass: results/mutants.md
 	@sh verify/tests/mutants.sh $(BUILD)/lightcheck quick > $(BUILD)/mutants.md; status=$$?; \
 	    cp $(BUILD)/mutants.md results/mutants.md; exit $$status
+
+gradings: all ## right solutions of every assignment, graded 200 times: results/gradings.md (N=count; goes on where it ended)
+	@sh verify/tests/gradings.sh $(BUILD)/lightcheck $(BUILD)/gradings.log $(or $(N),200) > $(BUILD)/gradings.md; status=$$?; \
+	    cp $(BUILD)/gradings.md results/gradings.md; exit $$status
 
 needs: ## say what is missing, if anything is
 	@:

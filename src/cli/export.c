@@ -4,11 +4,13 @@
 
 #include "cli/commands.h"
 #include "io/outfile.h"
+#include "io/scene_write.h"
+#include "verify/checks/family.h"
 #include "verify/renderers/pov_export.h"
 
 typedef struct export_arguments {
     const char *to, *mode, *size, *out;
-    int emission;
+    uint64_t seed;
     lc_pov_options pov;
     lc_strings definitions;
 } export_arguments;
@@ -20,33 +22,48 @@ static lc_pov_mode mode_of(const char *name)
                                            : LC_POV_DIRECT;
 }
 
-static lc_status write_file(const char *path, const lc_scene_desc *desc, const lc_pov_options *options, lc_error *err)
+static int is_pov(const export_arguments *a) { return strcmp(a->to, "pov") == 0; }
+
+static lc_status write_file(const export_arguments *a, const lc_scene_desc *desc, lc_error *err)
 {
     lc_outfile *out;
-    lc_status status = lc_outfile_open(&out, path, err);
+    char default_out[128];
+    snprintf(default_out, sizeof default_out, "%s.%s", desc->name, a->to);
+    lc_status status = lc_outfile_open(&out, a->out ? a->out : default_out, err);
     if (status != LC_OK)
         return status;
-    status = lc_pov_export(lc_outfile_stream(out), desc, options, err);
+    status = is_pov(a) ? lc_pov_export(lc_outfile_stream(out), desc, &a->pov, err)
+                       : lc_scene_write(lc_outfile_stream(out), desc, err);
     if (status == LC_OK)
         return lc_outfile_commit(out, err);
     lc_outfile_abort(out);
     return status;
 }
 
+/* A file's description, or a drawn one. */
+static lc_status describe(lc_scene_desc *desc, const export_arguments *a, const char *name, lc_error *err)
+{
+    const lc_family *family = lc_family_find(name);
+    lc_scene *scene;
+    if (family && a->definitions.count > 0)
+        return lc_fail(err, LC_BAD_INPUT, "%s is drawn: it has no <default> to define; expected --seed", name);
+    if (family)
+        return lc_family_describe(desc, family, a->seed, err);
+    lc_status status = lc_cli_load_scene(&scene, name, &a->definitions, err);
+    if (status != LC_OK)
+        return status;
+    status = lc_scene_desc_copy(desc, lc_scene_description(scene), err);
+    lc_scene_free(scene);
+    return status;
+}
+
 static lc_status export_scene(void *user, const lc_strings *rest, lc_error *err)
 {
     export_arguments *a = user;
-    const char *scene_name = rest->items[0];
-    lc_scene *scene;
     lc_scene_desc desc;
-    char default_out[128];
     if (!a->to)
-        return lc_fail(err, LC_BAD_INPUT, "--to pov says for which program");
-    lc_status status = lc_cli_load_scene(&scene, scene_name, &a->definitions, err);
-    if (status != LC_OK)
-        return status;
-    status = lc_scene_desc_copy(&desc, lc_scene_description(scene), err);
-    lc_scene_free(scene);
+        return lc_fail(err, LC_BAD_INPUT, "--to pov or --to xml says for which program");
+    lc_status status = describe(&desc, a, rest->items[0], err);
     if (status != LC_OK)
         return status;
     a->pov.mode = mode_of(a->mode);
@@ -60,22 +77,22 @@ static lc_status export_scene(void *user, const lc_strings *rest, lc_error *err)
     if (status == LC_OK && (desc.width < 1 || desc.height < 1 || desc.width > LC_MAX_SIZE || desc.height > LC_MAX_SIZE))
         status =
             lc_fail(err, LC_BAD_INPUT, "--size %dx%d: expected 1 to %d each", desc.width, desc.height, LC_MAX_SIZE);
-    snprintf(default_out, sizeof default_out, "%s.pov", desc.name);
-    const char *out = a->out ? a->out : default_out;
     if (status == LC_OK)
-        status = write_file(out, &desc, &a->pov, err);
+        status = write_file(a, &desc, err);
     lc_scene_desc_release(&desc);
     return status;
 }
 
 static int run(const lc_command *self, int argc, char **argv)
 {
-    export_arguments a = {.mode = "direct"};
+    export_arguments a = {.mode = "direct", .seed = 1};
     lc_pov_options_init(&a.pov);
     a.pov.bounces = -1;
     const lc_option options[] = {
-        {0, "to", LC_OPT_CHOICE, &a.to, "pov", "for which program; needed", 0, 0, "pov"},
-        {'o', "out", LC_OPT_STRING, &a.out, "FILE", "default SCENE.pov", 0, 0, NULL},
+        {0, "to", LC_OPT_CHOICE, &a.to, "pov|xml", "for POV-Ray, or as a scene's file (Mitsuba 3 reads it); needed", 0, 0,
+         "pov|xml"},
+        {'o', "out", LC_OPT_STRING, &a.out, "FILE", "default SCENE.pov or SCENE.xml", 0, 0, NULL},
+        {0, "seed", LC_OPT_UINT64, &a.seed, "N", "which scene of a family; default 1", 0, 0, NULL},
         {0, "mode", LC_OPT_CHOICE, &a.mode, "MODE",
          "direct (default): one diffuse reflection; radiosity: several; specular: mirrors and glass", 0, 0,
          "direct|radiosity|specular"},
@@ -92,16 +109,17 @@ static int run(const lc_command *self, int argc, char **argv)
         {0, NULL, LC_OPT_FLAG, NULL, NULL, NULL, 0, 0, NULL},
     };
     return lc_command_run(self, options, argc, argv, 1, 1,
-                          "expected one scene: a name (see `lightcheck list scenes`) or a path to an .xml file",
+                          "expected one scene: a name (see `lightcheck list scenes`), a path to an .xml file, or random_...",
                           export_scene, &a);
 }
 
 const lc_command lc_command_export = {
     "export",
-    "SCENE --to pov [-o FILE.pov] [options]",
-    "writes a scene for another renderer",
+    "SCENE --to pov|xml [-o FILE] [options]",
+    "writes a scene for another renderer, or one that was drawn",
     "What POV-Ray cannot express, or cannot do right, is refused with the reason (exit status 2); docs/povray.md has "
     "the\n"
-    "list. Render larger and average blocks for pixel means: POV-Ray samples pixel centres.\n",
+    "list. Render larger and average blocks for pixel means: POV-Ray samples pixel centres.\n"
+    "SCENE may be a family's, random_...: with --to xml a row of `verify --seed N` can be rendered, or replayed by sample.\n",
     run,
 };

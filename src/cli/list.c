@@ -13,17 +13,18 @@
 
 #define EXPECTED "expected one of: estimators, scenes, checks, mutants, variants, assignments"
 
-/* One item of a list; `detail` is what --json adds under "source". */
+/* One item of a list; summary and source may be NULL. */
 typedef void item_fn(json_t *array, const char *name, const char *summary, const char *source);
 
 static void print_item(json_t *array, const char *name, const char *summary, const char *source)
 {
     (void)array;
-    (void)source;
-    if (summary)
+    if (!summary)
+        printf("%s\n", name);
+    else if (!source)
         printf("%-24s %s\n", name, summary);
     else
-        printf("%s\n", name);
+        printf("%-24s %s [%s]\n", name, summary, source);
 }
 
 static void add_item(json_t *array, const char *name, const char *summary, const char *source)

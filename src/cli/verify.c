@@ -12,7 +12,7 @@
 #include "verify/judge/judge.h"
 
 typedef struct verify_arguments {
-    const char *suite, *estimator, *check, *scene, *seed, *format, *report, *renderer;
+    const char *suite, *estimator, *check, *scene, *seed, *format, *report, *renderer, *shard;
     double margin, budget, seconds;
     int threads, measure, jail;
 } verify_arguments;
@@ -140,6 +140,10 @@ static lc_status verify(void *user, const lc_strings *rest, lc_error *err)
     lc_status status = check_names(a, err);
     if (status == LC_OK)
         status = lc_cli_read_seed(&options.seed, a->seed, err);
+    if (status == LC_OK && a->shard)
+        status = lc_cli_read_pair(&options.shard, &options.shards, a->shard, '/', "--shard", err);
+    if (status == LC_OK && a->shard && options.shard >= options.shards)
+        status = lc_fail(err, LC_BAD_INPUT, "--shard %s: expected I/N with 0 <= I < N", a->shard);
     if (status == LC_OK && a->renderer && a->estimator)
         status = lc_fail(err, LC_BAD_INPUT, "--renderer and -e: one or the other is put to the test");
     if (status == LC_OK)
@@ -183,6 +187,8 @@ static int run(const lc_command *self, int argc, char **argv)
         {0, "seconds", LC_OPT_NUMBER, &a.seconds, "S", "that one call of ADAPTER may take; default 600", 0.1, 1e6, NULL},
         {'c', "check", LC_OPT_STRING, &a.check, "CHECK", "only this kind (see `lightcheck list checks`)", 0, 0, NULL},
         {0, "scene", LC_OPT_STRING, &a.scene, "SCENE", "only this scene of the suite", 0, 0, NULL},
+        {0, "shard", LC_OPT_STRING, &a.shard, "I/N", "only every N-th scene of the suite, from the I-th on (0 <= I < N)", 0,
+         0, NULL},
         {0, "margin", LC_OPT_NUMBER, &a.margin, "M", "relative, for estimators with c <= 1; default: the suite's", 0, 1,
          NULL},
         {0, "budget", LC_OPT_NUMBER, &a.budget, "P",

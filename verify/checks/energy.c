@@ -227,7 +227,7 @@ static lc_status plan_host(const lc_check *self, lc_claims *claims, lc_error *er
 const lc_check lc_check_energy = {
     "energy",
     "the host's materials: positive, reciprocal, no light lost or gained, sampled as they say",
-    "Veach, thesis 1997, ch. 5; Fresnel 1823; Pearson 1900; docs/checks.md",
+    "Veach, thesis 1997, ch. 5; Fresnel 1823; Walter, Marschner, Li, Torrance 2007; Pearson 1900; docs/checks.md",
     NULL,
     plan_host,
 };

@@ -58,26 +58,24 @@ static lc_status plan(const lc_check *self, lc_claims *claims, const lc_scene *s
         return LC_OK;
     if (emitters == 0 || (estimator->lobes & lc_scene_lobes(scene)) == 0 || estimator->max_bounces < 1)
         return LC_OK;
-    /* The quick suite: direct light where there is no closed form, or several lights; path tracers where lamps are so large that uniform directions
-     * find them, of these at one bounce only the hub of the others. The full suite has it all. */
-    static const char *const quick_direct[] = {"plane_tilted", "two_lights",    "five_lights",   "occluder",
-                                               "cornell",      "cornell_small", "cornell_large", "bright_room"};
+    /* The quick suite: direct light of one tilted lamp, of several, past an occluder, in two rooms; path tracers where lamps are so
+     * large that uniform directions find them. The full suite has it all. */
+    static const char *const quick_direct[] = {"plane_tilted", "two_lights", "five_lights",
+                                               "occluder",     "cornell",    "bright_room"};
     int is_deep = estimator->max_bounces > 1, is_quick = 0;
     /* In a Cornell box a direction rarely meets the lamp: 20 M paths a row, and a closed form holds the estimator there already. */
     int is_blind = estimator->emitters & LC_SKY && !(estimator->emitters & LC_POINT) && strncmp(desc->name, "cornell", 7) == 0;
-    int is_deep_hub =
-        strcmp(desc->name, "bright_room") == 0 && find_hub(scene, estimator, deep_hubs, 3, 1) == estimator;
     for (size_t i = 0; i < sizeof quick_direct / sizeof quick_direct[0]; ++i)
-        is_quick |= strcmp(desc->name, quick_direct[i]) == 0 && (!is_deep || is_deep_hub) && !is_blind;
+        is_quick |= strcmp(desc->name, quick_direct[i]) == 0 && !is_deep && !is_blind;
     lc_status status = LC_OK;
     int bounces = desc->max_bounces < estimator->max_bounces ? desc->max_bounces : estimator->max_bounces;
-    /* Of mirror and dielectric the deep row tells what the direct one would. */
-    int is_told = bounces > 1 && !is_quick && estimator->lobes & LC_MIRROR;
+    /* Of mirror and dielectric the deep row tells what the direct one would; of the scale, path's and three_point's do. */
+    int is_scaled = strcmp(desc->name, "cornell_small") == 0 || strcmp(desc->name, "cornell_large") == 0;
+    int is_told = (bounces > 1 && !is_quick && estimator->lobes & LC_MIRROR) || (is_scaled && is_blind);
     if (estimator->lobes & lc_scene_lobes(scene) & LC_DIFFUSE && !is_told)
         status = add(self, claims, scene, estimator, find_hub(scene, estimator, direct_hubs, 1, 1), 1, !is_quick, err);
-    int is_quick_deep = strcmp(desc->name, estimator->lobes & LC_GLASS ? "bright_mirrors" : "bright_room") == 0 ||
+    int is_quick_deep = strcmp(desc->name, estimator->lobes & LC_MIRROR ? "bright_mirrors" : "bright_room") == 0 ||
                         (estimator->emitters & LC_POINT && strncmp(desc->name, "cornell", 7) == 0);
-    int is_scaled = strcmp(desc->name, "cornell_small") == 0 || strcmp(desc->name, "cornell_large") == 0;
     if (status == LC_OK && bounces > 1 && !(is_scaled && estimator->lobes & LC_MIRROR)) /* path tells of the scale */
         status = add(self, claims, scene, estimator, find_hub(scene, estimator, deep_hubs, sizeof deep_hubs / sizeof deep_hubs[0], bounces), bounces,
                      !is_quick_deep, err);

@@ -152,6 +152,54 @@ static lc_status make_lights(lc_scene_desc *desc, lc_sampler *r, lc_error *err)
     return LC_OK;
 }
 
+/* A ball, a box, a rectangle or an ellipse of half sizes about `size`, turned anyhow, but what is flat by at most a radian from `lamp`: it
+ * reaches no farther than 1.75 times that. */
+static lc_status add_blocker(lc_scene_desc *desc, lc_vec3 centre, lc_vec3 lamp, double size, lc_sampler *r, lc_error *err)
+{
+    static const lc_shape_kind kinds[] = {LC_SPHERE, LC_CUBE, LC_RECTANGLE, LC_DISK};
+    lc_shape_kind kind = kinds[(int)(4 * lc_next(r))];
+    double a = within(r, 0.6, 1) * size, b = within(r, 0.6, 1) * size, c = within(r, 0.6, 1) * size;
+    if (kind == LC_SPHERE)
+        a = b = c = 1.4 * a;
+    lc_vec3 z = direction(r), towards = lc_normalize(lc_sub(lamp, centre));
+    int is_flat = kind == LC_RECTANGLE || kind == LC_DISK;
+    if (is_flat) /* 0.84: sine of a radian */
+        z = lc_normalize(lc_add(towards, lc_scale(0.84, z)));
+    lc_affine to_world = pose(z, within(r, 0, 2 * LC_PI), a, b, is_flat ? 1 : c, centre);
+    if (!add(desc, kind, to_world, plain(color_within(r, 0.2, 0.9)), plain(lc_black()), err))
+        return LC_FAULT;
+    desc->materials[desc->material_count - 1].side[1] = desc->materials[desc->material_count - 1].side[0];
+    return LC_OK;
+}
+
+/* A lamp of any kind and something between it and the plane, whose shadow falls where the camera looks. */
+static lc_status make_occluder(lc_scene_desc *desc, lc_sampler *r, lc_error *err)
+{
+    static const lc_shape_kind kinds[] = {LC_RECTANGLE, LC_DISK, LC_SPHERE};
+    double azimuth = within(r, 0, 2 * LC_PI), elevation = within(r, 0.7, 1.1), far = within(r, 2.2, 3);
+    double across = azimuth + LC_PI + within(r, -1.2, 1.2), away = within(r, 0.3, 0.9), tilt = within(r, 0, 0.7);
+    lc_shape_kind kind = kinds[(int)(3 * lc_next(r))];
+    lc_vec3 eye = lc_vec(far * cos(elevation) * cos(azimuth), far * cos(elevation) * sin(azimuth),
+                         far * sin(elevation));
+    lc_vec3 target = lc_vec(within(r, -0.3, 0.3), within(r, -0.3, 0.3), 0);
+    lc_vec3 lamp = lc_vec(away * cos(across), away * sin(across), within(r, 1.5, 1.9));
+    lc_vec3 shadow = lc_add(target, lc_vec(within(r, -0.2, 0.2), within(r, -0.2, 0.2), 0));
+    double a = within(r, 0.2, 0.45), b = kind == LC_SPHERE ? a : within(r, 0.2, 0.45), lean = within(r, 0, 2 * LC_PI);
+    lc_vec3 down = lc_vec(sin(tilt) * cos(lean), sin(tilt) * sin(lean), -cos(tilt));
+    desc->camera.to_world = look(eye, target, lc_vec(0, 0, 1));
+    desc->camera.fov = within(r, 25, 40);
+    lc_affine plane = pose(lc_vec(0, 0, 1), within(r, 0, LC_PI), 4, 3, 1, lc_vec(0, 0, 0));
+    lc_affine to_world = pose(down, within(r, 0, 2 * LC_PI), a, b, kind == LC_SPHERE ? a : 1, lamp);
+    if (!add(desc, LC_RECTANGLE, plane, plain(color_within(r, 0.2, 0.9)), plain(lc_black()), err) ||
+        !add(desc, kind, to_world, plain(lc_black()), plain(color_within(r, 1, 8)), err))
+        return LC_FAULT;
+    double height = within(r, 0.35, 0.55) / lamp.z;
+    lc_vec3 centre = lc_add(shadow, lc_scale(height, lc_sub(lamp, shadow)));
+    lc_status status = add_blocker(desc, centre, lamp, within(r, 0.11, 0.16), r, err);
+    throw(desc, r);
+    return status;
+}
+
 /* ---- inside of a sphere ----------------------------------------------------------------------------------------------- */
 
 static lc_texture checkers(lc_sampler *r, double low, double high)
@@ -169,7 +217,7 @@ static lc_texture checkers(lc_sampler *r, double low, double high)
 static lc_status make_furnace(lc_scene_desc *desc, lc_sampler *r, lc_error *err)
 {
     lc_affine to_world = pose(direction(r), within(r, 0, 2 * LC_PI), 1, 1, 1, lc_vec(0, 0, 0));
-    lc_texture albedo = checkers(r, 0.2, 0.8), radiance = checkers(r, 0.3, 3);
+    lc_texture albedo = checkers(r, 0.2, 0.8), radiance = checkers(r, 0.1, 1); /* what a file can say */
     lc_shape_desc *sphere = add(desc, LC_SPHERE, to_world, albedo, radiance, err);
     if (!sphere)
         return LC_FAULT;
@@ -201,6 +249,7 @@ static lc_status make_corridor(lc_scene_desc *desc, lc_sampler *r, lc_error *err
     desc->camera.to_world =
         look(eye, lc_add(eye, lc_vec(-cos(down), within(r, -0.3, 0.3), -sin(down))), lc_vec(0, 0, 1));
     desc->camera.fov = within(r, 20, 30);
+    throw(desc, r);
     return LC_OK;
 }
 
@@ -217,6 +266,7 @@ static lc_status make_slab(lc_scene_desc *desc, lc_sampler *r, lc_error *err)
     lc_vec3 towards = lc_vec(sin(angle) * cos(azimuth), sin(angle) * sin(azimuth), -cos(angle)), eye = lc_vec(0, 0, 3);
     desc->camera.to_world = look(eye, lc_add(eye, towards), lc_vec(cos(azimuth), sin(azimuth), 0.2));
     desc->camera.fov = within(r, 20, 60);
+    throw(desc, r);
     return LC_OK;
 }
 
@@ -225,9 +275,10 @@ const lc_family lc_families[] = {
     {"random_disk", "an elliptic lamp of any size and pose over a plane", make_disk},
     {"random_sphere", "a ball that shines over a plane", make_sphere},
     {"random_lights", "a rectangle, an ellipse and a ball, unequal, over a plane", make_lights},
+    {"random_occluder", "a lamp over a plane, and a ball, a box, a rectangle or an ellipse before it", make_occluder},
     {"random_furnace", "the inside of a sphere, emission and albedo in checkers", make_furnace},
-    {"random_corridor", "two mirrors of any tint and a lamp", make_corridor},
-    {"random_slab", "a slab of glass of any index, seen from any angle", make_slab},
+    {"random_corridor", "two mirrors of any tint and a lamp, in any pose", make_corridor},
+    {"random_slab", "a slab of glass of any index, in any pose", make_slab},
     {NULL, NULL, NULL},
 };
 

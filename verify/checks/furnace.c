@@ -146,7 +146,7 @@ static lc_status plan_inside(const lc_check *self, lc_claims *claims, const lc_s
         claim->may_be_still = !varies; /* the kernel is constant: cosine weights leave no variance */
         /* Checkerboards are looked up at every bounce: only path tracers of one lobe pay for that in the quick suite. */
         claim->full_only = estimator->max_bounces > 1 && !(is_drawn ? is_plain && k == 3
-                                                              : varies   ? is_plain && (k == 4 || k == 8)
+                                                              : varies   ? is_plain && k == 4
                                                                          : k == 5 || (is_plain && k == 2));
         claim->slack = is_drawn ? 2 : 1;
         claim->source = "inside of a sphere: rho(x) <Le> (1 + <rho> + ... + <rho>^(K-1))";

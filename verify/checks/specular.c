@@ -23,16 +23,30 @@ static lc_rgb lamp(const lc_scene *scene)
 
 static double fresnel_at(const lc_hit *hit, double ior) { return lc_fresnel_dielectric(lc_dot(hit->n, hit->wo), ior); }
 
-/* Mirrors at x = -1 (first) and x = 1, a lamp at z = -3. Unfolded, the path is a straight line that crosses planes two metres apart. */
+/* A rectangle's place and unit normal, whatever its side. */
+static void plane_of(lc_vec3 *centre, lc_vec3 *normal, const lc_shape_desc *shape)
+{
+    const lc_affine *a = &shape->to_world;
+    *centre = lc_vec(a->m[0][3], a->m[1][3], a->m[2][3]);
+    *normal = lc_normalize(lc_cross(lc_vec(a->m[0][0], a->m[1][0], a->m[2][0]), lc_vec(a->m[0][1], a->m[1][1], a->m[2][1])));
+}
+
+/* Two facing mirrors, shapes 0 (seen first) and 1, and across them a lamp, shape 2. Unfolded, the path is a straight line that crosses
+ * planes as far apart as the mirrors. */
 static lc_status corridor_view(lc_rgb *value, int *kind, const lc_scene *scene, const lc_hit *hit, void *user,
                                lc_error *err)
 {
     const lc_scene_desc *desc = lc_scene_description(scene);
+    lc_vec3 first, across, second, lamp_at, down, unused;
     (void)user;
     if (!hit->valid || hit->shape != 0)
-        return lc_fail(err, LC_FAULT, "%s: a camera ray misses the left mirror", desc->name);
-    double fall = (hit->p.z + 3) / hit->wo.z; /* length of the path from the first mirror to the lamp */
-    int k = 1 + (int)floor(fall * fabs(hit->wo.x) / 2);
+        return lc_fail(err, LC_FAULT, "%s: a camera ray misses the first mirror", desc->name);
+    plane_of(&first, &across, &desc->shapes[0]);
+    plane_of(&second, &unused, &desc->shapes[1]);
+    plane_of(&lamp_at, &down, &desc->shapes[2]);
+    double width = fabs(lc_dot(lc_sub(second, first), across));
+    double fall = lc_dot(lc_sub(hit->p, lamp_at), down) / lc_dot(hit->wo, down); /* length of the path from the first mirror to the lamp */
+    int k = 1 + (int)floor(fall * fabs(lc_dot(hit->wo, across)) / width);
     *kind = k;
     if (value) {
         lc_rgb le = lamp(scene), r1 = desc->materials[desc->shapes[0].material].side[0].mirror;

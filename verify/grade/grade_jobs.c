@@ -80,6 +80,11 @@ static lc_status plan_scene(lc_job *job, const char *name, const lc_grading *g, 
         return lc_fail(err, LC_BAD_INPUT, "%s: test %s: the check %s says nothing about %s over %s%s", g->assignment->path,
                        test->name, test->check, g->reference->name, name,
                        test->relation[0] || test->max_bounces >= 0 ? " with this relation and these bounces" : "");
+    for (int i = before; i < job->claims.count && status == LC_OK; ++i)
+        if (job->claims.items[i].max_bounces > g->assignment->bounces)
+            status = lc_fail(err, LC_BAD_INPUT, "%s: test %s: over %s the check %s asks for %d bounces, the assignment for %d only",
+                             g->assignment->path, test->name, name, test->check, job->claims.items[i].max_bounces,
+                             g->assignment->bounces);
     return status;
 }
 

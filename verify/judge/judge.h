@@ -49,6 +49,8 @@ typedef struct lc_verify_options {
     const lc_estimator *estimator; /* only this one (it need not be in the registry), or NULL: all */
     const char *given;             /* how that was named on the command line; NULL: by its name */
     const char *check, *scene;     /* only these, or NULL */
+    int shard, shards;             /* only every shards-th scene, from `shard` on, 0 <= shard < shards; what is said of the host
+                                      counts as the first scene. 0 0: all */
     const lc_adapter *renderer;    /* another program whose estimator `estimator` is, or NULL */
     /* Called after each row, in the order of the report; may be NULL. */
     void (*on_row)(void *user, const lc_row *row, int done, int count);

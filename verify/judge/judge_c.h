@@ -54,6 +54,9 @@ void lc_session_clear(lc_session *session);
 /* 1 for the estimators that the program ships. */
 int lc_is_registered(const lc_estimator *estimator);
 
+/* Judges the claims, scenes at the same time, and appends their rows to the report in this order; each thread has a session of its own,
+ * that begins as `model`, which has no films yet. */
+lc_status lc_judge_all(lc_report *report, const lc_session *model, const lc_claim *const *claims, int count, lc_error *err);
 /* Decides one claim and fills the row. */
 lc_status lc_judge_claim(lc_row *row, lc_session *session, const lc_claim *claim, lc_error *err);
 /* The same for a paired claim, in paired.c; room for the differences of one channel in `field`. */

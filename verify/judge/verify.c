@@ -105,38 +105,24 @@ static int is_selected(const lc_verify_options *o, const lc_claim *claim)
            (!o->scene || strcmp(o->scene, lc_scene_description(claim->scene)->name) == 0);
 }
 
-static lc_status judge_all(lc_report *report, lc_session *session, const lc_claims *claims, lc_error *err)
+/* The claims that were asked for, in their order; a shard is every so many scenes. How many rows the whole run has is known already. */
+static lc_status judge_selected(lc_report *report, const lc_session *session, const lc_claims *claims, lc_error *err)
 {
     const lc_verify_options *o = session->options;
-    int selected = 0;
-    for (int i = 0; i < claims->count; ++i)
-        selected += is_selected(o, &claims->items[i]);
+    const lc_claim **selected = calloc((size_t)claims->count + 1, sizeof *selected);
     const lc_scene *scene = NULL;
+    int count = 0, nth = 0;
+    if (!selected)
+        return lc_fail(err, LC_FAULT, "out of memory for the rows");
     for (int i = 0; i < claims->count; ++i) {
-        if (!is_selected(o, &claims->items[i]))
-            continue;
-        if (claims->items[i].scene != scene)
-            lc_session_clear(session);
+        nth += claims->items[i].scene != scene;
         scene = claims->items[i].scene;
-        lc_row *row = lc_report_add(report);
-        if (!row)
-            return lc_fail(err, LC_FAULT, "out of memory for the report");
-        lc_status status = lc_judge_claim(row, session, &claims->items[i], err);
-        if (status != LC_OK)
-            --report->count;
-        if (status == LC_BAD_INPUT && !claims->items[i].decide && lc_is_foreign(session, claims->items[i].estimator)) {
-            status = lc_report_note(report, claims->items[i].check->name, lc_scene_description(scene)->name, err->text, err);
-            --selected;
-            if (status == LC_OK)
-                continue;
-        }
-        if (status != LC_OK)
-            return status;
-        if (o->on_row)
-            o->on_row(o->user, row, report->count, selected);
+        if (is_selected(o, &claims->items[i]) && (o->shards == 0 || nth % o->shards == o->shard))
+            selected[count++] = &claims->items[i];
     }
-    report->paths = session->paths;
-    return LC_OK;
+    lc_status status = lc_judge_all(report, session, selected, count, err);
+    free(selected);
+    return status;
 }
 
 lc_status lc_verify(lc_report *report, const lc_verify_options *options, lc_load_scene_fn *load, lc_error *err)
@@ -167,9 +153,8 @@ lc_status lc_verify(lc_report *report, const lc_verify_options *options, lc_load
         session.rows = claims.count;
         lc_budget budget = {options->false_fail, options->false_pass, session.rows, 3, LC_MOST_LOOKS};
         lc_budget_text(report->budget, sizeof report->budget, &budget, 64, 64);
-        status = judge_all(report, &session, &claims, err);
+        status = judge_selected(report, &session, &claims, err);
     }
-    lc_session_clear(&session);
     lc_claims_release(&claims);
     for (int i = 0; i < scene_count; ++i)
         lc_scene_free(scenes[i]);

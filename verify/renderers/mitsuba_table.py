@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Holds lightcheck against Mitsuba 3 on the same files: the whole image and every 8x8 tile, within the joint error bars.
 
-    mitsuba_table.py [-o FILE.md] [SCENE ...]        default: every scene, to stdout
+    mitsuba_table.py [-o FILE.md] [SCENE ...]        default: every scene and two of each family, to stdout; random_NAME:SEED is one
 
 Reflected light only (bounces 1 to B); pixels on a lamp's edge, whose emission is noise, are held together, and with it. Our
 variance comes from our samples, Mitsuba's from independent replicates; t is the difference over its joint standard error, with
@@ -11,6 +11,7 @@ scene's depth. The budget of a false DIFFERS is 1e-6 for the whole table, split 
 agree, 1 a row differs, 2 bad usage or no Mitsuba, 4 a render failed.
 """
 import argparse
+import collections
 import math
 import os
 import re
@@ -37,10 +38,14 @@ BLEND = re.compile(r'<bsdf type="blendbsdf">(?:(?!</bsdf>\s*</bsdf>).)*"diffuse"
 CONDUCTOR = '<bsdf type="conductor">'
 ROUGH = '<bsdf type="roughconductor"><float name="alpha" value="0.001"/>'
 # Its sphere decides differently, in sampling and in the density of a direction, whether a point of the sphere itself is inside: in
-# the inside of a lamp the two weights of `path` do not add up to 1 (results/renderers.md). One strategy alone has no weights.
-INSIDE_LAMP = ["furnace_sphere", "furnace_checker"]
-# A path tracer that sees everything, the least noisy first.
-PATHS = ["path_mis", "path_nee", "dielectric"]
+# the inside of a lamp the two weights of `path` do not add up to 1 (results/renderers.md), and where the sphere is turned, moved
+# and scaled, sampling it alone is off as well: +12% in random_furnace:2. By directions alone it agrees.
+INSIDE_LAMP = ["furnace_sphere", "furnace_checker", "random_furnace"]
+# Families whose checks look at more than one bounce; their files do not say how many.
+DRAWN_DEPTH = {"random_corridor": 13, "random_slab": 9}
+# A path tracer that sees everything but rough mirrors, and one of direct light that sees these.
+PATH, GLOSSY = "path_full", "glossy_direct"
+SEEDS = [1, 2]  # of each family
 
 
 def tail(t, df):
@@ -128,16 +133,25 @@ def their_image(mi, np, text, integrator, first, bounces):
 
 def compare(mi, np, row):
     """The comparison, and the last bounce. On a lamp's edge the whole radiance is compared, elsewhere what is reflected."""
-    scene, estimator, wanted, samples, text, integrator, _ = row
-    ours, bounces = our_image(mi, np, scene, estimator, 1, wanted, samples)
-    theirs = their_image(mi, np, text, integrator, 1, bounces)
-    glow, _ = our_image(mi, np, scene, estimator, 0, 0, 1024)
-    edges = np.broadcast_to(np.any(glow[1] > 0, axis=-1, keepdims=True), glow[1].shape).astype(np.float64)
-    if edges.any():
-        whole = our_image(mi, np, scene, estimator, 0, bounces, samples)[0], their_image(mi, np, text, integrator, 0, bounces)
-        ours, theirs = (tuple(np.where(edges > 0, w, r) for w, r in zip(pair[0][:2], pair[1][:2])) + (pair[1][2],)
-                        for pair in zip(whole, (ours, theirs)))
-    return Comparison(np, ours, theirs, edges, SHIFT.get(scene, (0, 0))), bounces
+    with tempfile.TemporaryDirectory() as folder:
+        scene = row.scene
+        if is_drawn(scene):
+            scene = os.path.join(folder, scene.replace(":", "_") + ".xml")
+            with open(scene, "w", encoding="utf-8") as file:
+                file.write(row.text)
+
+        def ours_of(first, last, samples):
+            return our_image(mi, np, scene, row.estimator, first, last, samples)
+
+        ours, bounces = ours_of(1, row.bounces, row.samples)
+        theirs = their_image(mi, np, row.text, row.integrator, 1, bounces)
+        glow, _ = ours_of(0, 0, 1024)
+        edges = np.broadcast_to(np.any(glow[1] > 0, axis=-1, keepdims=True), glow[1].shape).astype(np.float64)
+        if edges.any():
+            whole = ours_of(0, bounces, row.samples)[0], their_image(mi, np, row.text, row.integrator, 0, bounces)
+            ours, theirs = (tuple(np.where(edges > 0, w, r) for w, r in zip(pair[0][:2], pair[1][:2])) + (pair[1][2],)
+                            for pair in zip(whole, (ours, theirs)))
+    return Comparison(np, ours, theirs, edges, SHIFT.get(row.scene, (0, 0))), bounces
 
 
 def names_of(kind):
@@ -146,34 +160,56 @@ def names_of(kind):
     return [line.split()[0] for line in lines]
 
 
+def is_drawn(name):
+    return name.startswith("random_")
+
+
+def every_scene():
+    """Those that have a file, and of each family, which `lightcheck export` names, some that were drawn."""
+    with open("verify/checks/family.c", encoding="utf-8") as file:
+        families = re.findall(r'^    \{"(random_\w+)"', file.read(), re.M)
+    return names_of("scenes") + [f"{family}:{seed}" for family in families for seed in SEEDS]
+
+
 def read_scene(name):
-    with open(f"scenes/{name}.xml", encoding="utf-8") as file:
-        return file.read()
+    if not is_drawn(name):
+        with open(f"scenes/{name}.xml", encoding="utf-8") as file:
+            return file.read()
+    family, seed = name.split(":")
+    with tempfile.TemporaryDirectory() as folder:
+        out = os.path.join(folder, "drawn.xml")
+        subprocess.run([os.environ.get("LIGHTCHECK", "build/lightcheck"), "export", family, "--to", "xml", "--seed", seed,
+                        "-o", out], check=True)
+        with open(out, encoding="utf-8") as file:
+            return file.read()
 
 
-def plan_rows(scenes):
-    """(scene, estimator, bounces or None for the scene's, our samples a pixel, what Mitsuba renders, how, and that in words)."""
-    known = names_of("estimators")
-    path = next(name for name in PATHS if name in known)
+# bounces: None for the scene's; samples: ours, a pixel; text: the file that Mitsuba renders, by which integrator, and that in words.
+Row = collections.namedtuple("Row", "scene estimator bounces samples text integrator note")
+
+
+def rows_of(scene):
+    model = UNIT_SCALE.get(scene, scene)
+    text = read_scene(model)
+    note = f" (Mitsuba: {model})" if model != scene else ""
+    if '<vector name="motion"' in text:  # Mitsuba 3 has no moving shapes
+        return []
+    if BLEND.search(text):
+        text = BLEND.sub(lambda blend: blend.group(0).replace(CONDUCTOR, ROUGH), text)
+        note = " (Mitsuba: mirror of the blend rough)"
+    depth = re.search(r'name="max_depth" value="(\d+)"', text)
+    depth = int(depth.group(1)) if depth else DRAWN_DEPTH.get(scene.split(":")[0], 2)
+    special = re.search('type="(conductor|dielectric)"', text)
+    has_sky = '"constant"' in text  # which no direct estimator of lights reaches
+    if '"roughconductor"' in text and not special:
+        return [Row(scene, GLOSSY, 1, 4096, text, "path", note)]
+    inside = scene.split(":")[0] in INSIDE_LAMP
     rows = []
-    for scene in scenes:
-        model = UNIT_SCALE.get(scene, scene)
-        text = read_scene(model)
-        note = f" (Mitsuba: {model})" if model != scene else ""
-        if BLEND.search(text):
-            text = BLEND.sub(lambda blend: blend.group(0).replace(CONDUCTOR, ROUGH), text)
-            note = " (Mitsuba: mirror of the blend rough)"
-        depth = re.search(r'name="max_depth" value="(\d+)"', text)
-        special = "conductor" in text or "dielectric" in text
-        has_sky = '"constant"' in text  # which no direct estimator of lights reaches
-        if not special and not has_sky:
-            inside = scene in INSIDE_LAMP
-            rows.append((scene, "light_direct", 1, 4096, text, "direct_emitter" if inside else "path",
-                         note + " (Mitsuba: samples lamps only)" * inside))
-        if scene in INSIDE_LAMP:
-            continue
-        if special or has_sky or depth and int(depth.group(1)) > 2:
-            rows.append((scene, path, None, 8192 if path == "dielectric" else 4096, text, "path", note))
+    if not special and not has_sky:
+        rows.append(Row(scene, "light_direct", 1, 4096, text, "direct_bsdf" if inside else "path",
+                        note + " (Mitsuba: samples directions only)" * inside))
+    if (special or has_sky or depth > 2) and not inside:
+        rows.append(Row(scene, PATH, depth - 1, 8192, text, "path", note))
     return rows
 
 
@@ -188,18 +224,18 @@ Made by `make mitsuba-table`; verify/renderers/mitsuba_table.py says how. Reflec
 integrator `path` without roulette, {REPLICATES} replicates of {SPP} samples a pixel. t is the largest of three channels, beyond the
 tolerance: over the image, in a tile of {TILE}x{TILE} pixels, and over the pixels on a lamp's edge, left out of the others. A row
 differs where a probability, times all rows, channels, sizes and tiles, is below {BUDGET:g}. renderers.md tells where Mitsuba
-is given another file than ours, and why.
+is given another file than ours, and why. random_NAME:SEED was drawn, and written by `lightcheck export`. Scenes in motion have
+no row: Mitsuba 3 cannot move a shape.
 
 | scene | estimator | bounces | samples a pixel, ours and Mitsuba's | ours / Mitsuba | t of the image | largest t of a tile | tiles | t of lamps' edges | tolerance | |
 |---|---|---|---|---|---|---|---|---|---|---|
 """)
     for row in rows:
         c, bounces = compare(mi, np, row)
-        scene, estimator, samples, note = row[0], row[1], row[3], row[6]
         good = c.image[1] > limit and c.edge[1] > limit and c.tile[1] > limit / c.tiles
         differs += not good
-        tolerances = SHIFT.get(scene)
-        out.write(f"| {scene}{note} | {estimator} | 1 to {bounces} | {samples}, {REPLICATES * SPP} | {c.ratio} | {c.image[0]:.2f} | "
+        tolerances = SHIFT.get(row.scene)
+        out.write(f"| {row.scene}{row.note} | {row.estimator} | 1 to {bounces} | {row.samples}, {REPLICATES * SPP} | {c.ratio} | {c.image[0]:.2f} | "
                   f"{c.tile[0]:.2f} | {c.tiles} | {c.edge[0]:.2f} | "
                   f"{f'{tolerances[0]:.1e}, tiles {tolerances[1]:.0e}' if tolerances else '0'} | "
                   f"{'agrees' if good else 'DIFFERS'} |\n")
@@ -221,7 +257,7 @@ def main():
         return 2
     mi.set_variant(os.environ.get("VARIANT", "scalar_rgb"))
     mi.set_log_level(mi.LogLevel.Error)
-    rows = plan_rows(args.scenes or names_of("scenes"))
+    rows = [row for scene in args.scenes or every_scene() for row in rows_of(scene)]
     if not args.out:
         return 1 if write_table(sys.stdout, rows) else 0
     half = args.out + ".part"

@@ -7,6 +7,7 @@
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <pthread.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,7 +19,8 @@
 
 extern char **environ; /* POSIX asks for the declaration */
 
-/* The group that is waited for; one at a time. */
+/* The group that is waited for; one at a time: it has all cores, and a signal ends one only. */
+static pthread_mutex_t alone = PTHREAD_MUTEX_INITIALIZER;
 static volatile sig_atomic_t running;
 static char running_in[LC_PROGRAM_PATH]; /* its folder */
 
@@ -107,16 +109,21 @@ lc_status lc_program_run(int *exit_status, const lc_program *program, lc_error *
         const char *const *given;
         char *const *taken;
     } arguments = {program->arguments};
+    pthread_mutex_lock(&alone);
     pid_t child = fork();
-    if (child < 0)
-        return lc_fail(err, LC_FAULT, "cannot start %s: %s", program->name, strerror(errno));
     if (child == 0)
         become(program, arguments.taken);
-    setpgid(child, child); /* whoever comes first */
-    snprintf(running_in, sizeof running_in, "%s", program->folder);
-    running = child;
-    lc_status status = wait_for(child, program, exit_status, err);
-    running = 0;
+    lc_status status = LC_OK;
+    if (child < 0) {
+        status = lc_fail(err, LC_FAULT, "cannot start %s: %s", program->name, strerror(errno));
+    } else {
+        setpgid(child, child); /* whoever comes first */
+        snprintf(running_in, sizeof running_in, "%s", program->folder);
+        running = child;
+        status = wait_for(child, program, exit_status, err);
+        running = 0;
+    }
+    pthread_mutex_unlock(&alone);
     return status;
 }
 

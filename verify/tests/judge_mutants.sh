@@ -87,6 +87,8 @@ mutant skewness_of_the_wrong_side $estimate 's/double third = i == 0 ? arm->thir
 mutant skewness_cancels_between_arms $estimate 's/spoil\[LC_LOW\] += fmax(third, 0)/spoil[LC_LOW] += third/'
 mutant sixteen_samples_are_enough verify/stats/estimate.h 's/LC_LEAST_SAMPLES = 256/LC_LEAST_SAMPLES = 16/'
 
+mutant tiles_of_differences verify/judge/paired.c 's/^    lc_plan_whole(&plan/    if (claim->whole_only) lc_plan_whole(\&plan/'
+
 # The pyramid.
 mutant pyramid_stops_early $pyramid 's/^\( *\)judge_tile(state, l, x, y, sum);/\1if (l < state->out->levels - 1) judge_tile(state, l, x, y, sum);/'
 mutant pyramid_without_pixels $pyramid 's/^\( *\)judge_tile(state, l, x, y, sum);/\1if (l > 0) judge_tile(state, l, x, y, sum);/'

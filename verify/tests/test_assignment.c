@@ -7,11 +7,9 @@
 #include "verify/grade/sentences.h"
 #include "verify/tests/grade_help.h"
 
-static lc_assignment a;
-
-#define HEAD "{\"title\": \"T\",\n\"reference\": \"path\",\n\"bounces\": 5,\n"
+#define OPENING "{\"title\": \"T\",\n\"reference\": \"path\",\n\"bounces\": 5,\n"
 #define ONE "{\"name\": \"one\", \"title\": \"One\", \"kind\": \"descriptor\", \"points\": 2}"
-#define TESTS(text) HEAD "\"tests\": [\n" text "]}"
+#define TESTS(text) OPENING "\"tests\": [\n" text "]}"
 
 /* ---- mistakes ---------------------------------------------------------------------------------------------------------- */
 
@@ -31,17 +29,17 @@ static const struct {
     {"{\"title\": \"T\", \"reference\": \"path\", \"bounces\": 2,\n\"emitters\": [\"area\",\n \"point\"]}", ":2: emitters: ", "path has less"},
     {"{\"title\": \"T\", \"reference\": \"path\", \"bounces\": 2,\n\"lobes\": [\"diffuse\",\n \"shiny\"]}", ":3: number 2: ",
      "unknown 'shiny'; supported: diffuse, mirror, glass, glossy"},
-    {HEAD "\"margin\": 1, \"tests\": []}", ":4: margin: ", "from 0.001 to 0.1"},
-    {HEAD "\"hints\": {\"show\": \"all\"}}", ":4: show: ", "supported: none, category, name"},
-    {HEAD "\"hints\": {\n\"show\": \"name\",\n\"after\": 3}}", ":6: after: ", "supported: show, after_attempts"},
-    {HEAD "\"due\": \"2026-12-01\"}", ":4: due: ", "a moment with its zone"},
-    {HEAD "\"due\": \"2026-12-01T10:00:00\"}", ":4: due: ", "a moment with its zone"},
-    {HEAD "\"due\": \"2026-13-01T10:00:00Z\"}", ":4: due: ", "a moment with its zone"},
-    {HEAD "\"late\": {\"per_day\": 0.1}}", ":4: late: ", "without `due` nothing is late"},
-    {HEAD "\"solutions\": [\"path\",\n\"path_no_pi\"]}", ":5: number 2: ", "lightcheck list estimators|variants"},
-    {HEAD "\"beyond\": [\"path\"]}", ":4: number 1: ", "lightcheck list mutants"},
-    {HEAD "\"tests\": []}", ":4: tests: ", "has 0 elements, expected 1 to 12"},
-    {HEAD "\"tests\": 3}", ":4: tests: ", "expected a list"},
+    {OPENING "\"margin\": 1, \"tests\": []}", ":4: margin: ", "from 0.001 to 0.1"},
+    {OPENING "\"hints\": {\"show\": \"all\"}}", ":4: show: ", "supported: none, category, name"},
+    {OPENING "\"hints\": {\n\"show\": \"name\",\n\"after\": 3}}", ":6: after: ", "supported: show, after_attempts"},
+    {OPENING "\"due\": \"2026-12-01\"}", ":4: due: ", "a moment with its zone"},
+    {OPENING "\"due\": \"2026-12-01T10:00:00\"}", ":4: due: ", "a moment with its zone"},
+    {OPENING "\"due\": \"2026-13-01T10:00:00Z\"}", ":4: due: ", "a moment with its zone"},
+    {OPENING "\"late\": {\"per_day\": 0.1}}", ":4: late: ", "without `due` nothing is late"},
+    {OPENING "\"solutions\": [\"path\",\n\"path_no_pi\"]}", ":5: number 2: ", "lightcheck list estimators|variants"},
+    {OPENING "\"beyond\": [\"path\"]}", ":4: number 1: ", "lightcheck list mutants"},
+    {OPENING "\"tests\": []}", ":4: tests: ", "has 0 elements, expected 1 to 12"},
+    {OPENING "\"tests\": 3}", ":4: tests: ", "expected a list"},
     {TESTS("7"), ":5: number 1: ", "expected an object"},
     {TESTS("{\"title\": \"}{][\\\"\", \n \"name\": \"a b\"}"), ":6: name: ", "expected letters, digits and _"},
     {TESTS(ONE ",\n" ONE), ":6: name: ", "there is a test 'one' already"},
@@ -92,7 +90,7 @@ START_TEST(test_assignment_values)
     lc_error err = {""};
     lc_status status = read_text_as_assignment(
         &a,
-        HEAD "\"due\": \"2026-03-01T12:00:00+02:00\", \"published\": \"1972-03-01T00:00:00Z\", \"late\": {\"per_day\": 0.1, \"most\": 0.5},\n"
+        OPENING "\"due\": \"2026-03-01T12:00:00+02:00\", \"published\": \"1972-03-01T00:00:00Z\", \"late\": {\"per_day\": 0.1, \"most\": 0.5},\n"
              "\"hints\": {\"show\": \"name\", \"after_attempts\": 3}, \"cpu_seconds\": 20, \"emitters\": [\"sky\"],\n"
              "\"solutions\": [\"path\", \"path_by_cosine\"], \"mutants_of\": [\"path\"], \"tests\": [" ONE ",\n"
              "{\"name\": \"two\", \"title\": \"Two\", \"kind\": \"variance\", \"points\": 1.5, \"requires\": [\"one\"], \"visibility\": \"hidden\",\n"

@@ -277,6 +277,7 @@ START_TEST(bad_values_are_2_and_say_what_is_good)
     run_bad(BAD, "neither `random` nor a whole number", "verify", "--seed", "dice");
     run_bad(BAD, "unknown check 'nosuch'", "verify", "-c", "nosuch");
     run_bad(BAD, "'nosuch' is not in the suites", "verify", "--scene", "nosuch");
+    run_bad(BAD, "0 <= I < N", "verify", "--shard", "3/3");
     run_bad(BAD, "nothing to verify", "verify", "-c", "furnace", "--scene", "cornell");
 }
 END_TEST
@@ -322,6 +323,26 @@ START_TEST(lists_are_for_scripts)
             for (int k = 0; k < count; ++k)
                 ck_assert_str_eq(names[k], lc_estimators[k]->name);
     }
+}
+END_TEST
+
+/* What a check claims comes from somewhere. */
+START_TEST(checks_name_their_source)
+{
+    json_error_t why;
+    run(OK, "list", "checks", "--json");
+    json_t *array = json_loads(ran.out, 0, &why);
+    ck_assert_msg(json_is_array(array), "%s", why.text);
+    run(OK, "list", "checks");
+    for (size_t i = 0; i < json_array_size(array); ++i) {
+        const json_t *item = json_array_get(array, i);
+        const char *name = json_string_value(json_object_get(item, "name"));
+        const char *source = json_string_value(json_object_get(item, "source"));
+        ck_assert_msg(source && strlen(source) > 10, "%s has no source", name);
+        const char *line = strstr(ran.out, name), *at = line ? strstr(line, source) : NULL;
+        ck_assert_msg(at && at < line + strcspn(line, "\n"), "%s: its line does not name %s", name, source);
+    }
+    json_decref(array);
 }
 END_TEST
 
@@ -583,6 +604,7 @@ Suite *lc_suite_cli(void)
     tcase_add_test(tc, bad_values_are_2_and_say_what_is_good);
     tcase_add_test(tc, unknown_names_list_the_known_ones);
     tcase_add_test(tc, lists_are_for_scripts);
+    tcase_add_test(tc, checks_name_their_source);
     tcase_add_test(tc, bad_files_are_named);
     tcase_add_test(tc, output_that_cannot_be_written_is_4);
     tcase_add_test(tc, a_full_or_closed_stdout_is_4);

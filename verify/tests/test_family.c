@@ -93,13 +93,18 @@ START_TEST(lamps_stand_apart)
             const lc_affine *m = &desc.shapes[i].to_world;
             int flat = desc.shapes[i].kind != LC_SPHERE;
             double a = lc_length(lc_affine_vector(m, lc_vec(1, 0, 0))), b = lc_length(lc_affine_vector(m, lc_vec(0, 1, 0)));
-            reach[i] = desc.shapes[i].kind == LC_RECTANGLE ? hypot(a, b) : fmax(a, b);
+            double c = lc_length(lc_affine_vector(m, lc_vec(0, 0, 1)));
+            reach[i] = desc.shapes[i].kind == LC_CUBE        ? sqrt(a * a + b * b + c * c)
+                       : desc.shapes[i].kind == LC_RECTANGLE ? hypot(a, b)
+                                                             : fmax(a, b);
             centre[i] = lc_affine_point(m, lc_vec(0, 0, 0));
             for (int k = 0; k < 64; ++k) { /* its rim is above the plane */
                 lc_vec3 rim = desc.shapes[i].kind == LC_RECTANGLE
                                   ? lc_vec(k % 2 ? 1 : -1, k % 4 / 2 ? 1 : -1, 0)
                                   : lc_vec(cos(k * LC_PI / 32), sin(k * LC_PI / 32), 0);
-                if (!flat)
+                if (desc.shapes[i].kind == LC_CUBE)
+                    rim = lc_vec(k % 2 ? 1 : -1, k % 4 / 2 ? 1 : -1, k % 8 / 4 ? 1 : -1);
+                else if (!flat)
                     rim = lc_vec(cos(k * LC_PI / 32), 0, sin(k * LC_PI / 32));
                 ck_assert_double_gt(lc_affine_point(&back, lc_affine_point(m, rim)).z, 0);
             }
@@ -110,10 +115,44 @@ START_TEST(lamps_stand_apart)
         lc_rgb e;
         const lc_affine *plane = &desc.shapes[0].to_world;
         lc_vec3 n = lc_normalize(lc_affine_vector(plane, lc_vec(0, 0, 1)));
-        ck_assert_int_eq(lc_direct_irradiance(&e, &desc, lc_affine_point(plane, lc_vec(0, 0, 0)), n, &err), LC_OK);
+        ck_assert_int_eq(lc_direct_unoccluded(&e, &desc, lc_affine_point(plane, lc_vec(0, 0, 0)), n, &err), LC_OK);
         ck_assert_double_gt(e.r, 0);
         lc_scene_desc_release(&desc);
     }
+}
+END_TEST
+
+/* Else it would be random_lights once more. */
+START_TEST(the_camera_sees_the_shadow)
+{
+    const lc_family *family = lc_family_find("random_occluder");
+    int kinds[2][4] = {{0}, {0}};
+    lc_error err = {""};
+    for (uint64_t seed = 1; seed <= SEEDS; ++seed) {
+        lc_scene_desc drawn = draw(family, seed);
+        lc_scene *scene = build_scene(&drawn);
+        const lc_scene_desc *desc = lc_scene_description(scene);
+        int dark = 0, bright = 0;
+        ++kinds[0][desc->shapes[1].kind];
+        ++kinds[1][desc->shapes[2].kind];
+        for (int i = 0; i < 256; ++i) {
+            lc_ray ray = lc_camera_ray(&desc->camera, 16, 16, i % 16 + 0.5, i / 16 + 0.5);
+            lc_hit hit;
+            lc_rgb is, free;
+            lc_camera_see(scene, &ray, &hit);
+            if (!hit.valid || hit.shape != 0)
+                continue;
+            ck_assert_int_eq(lc_direct_irradiance(&is, desc, hit.p, hit.n, &err), LC_OK);
+            ck_assert_int_eq(lc_direct_unoccluded(&free, desc, hit.p, hit.n, &err), LC_OK);
+            dark += is.g < 0.9 * free.g;
+            bright += is.g > 0.9999 * free.g;
+        }
+        ck_assert_msg(dark >= 4 && bright >= 4, "seed %d: %d of 256 points in the shadow, %d outside", (int)seed, dark,
+                      bright);
+        lc_scene_free(scene);
+    }
+    for (int i = 0; i < 8; ++i) /* no cube shines */
+        ck_assert(kinds[i / 4][i % 4] > SEEDS / 10 || i == LC_CUBE);
 }
 END_TEST
 
@@ -132,7 +171,8 @@ Suite *lc_suite_family(void)
     tcase_set_timeout(c, 60);
     tcase_add_loop_test(c, the_seed_alone_decides, 0, count_families());
     tcase_add_loop_test(c, the_camera_sees_what_it_is_about, 0, count_families());
-    tcase_add_loop_test(c, lamps_stand_apart, 0, 4); /* those over a plane stand first */
+    tcase_add_loop_test(c, lamps_stand_apart, 0, 5); /* those over a plane stand first */
+    tcase_add_test(c, the_camera_sees_the_shadow);
     suite_add_tcase(suite, c);
     return suite;
 }

@@ -10,46 +10,7 @@
 #include "verify/tests/grade_help.h"
 #include "verify/tests/load_help.h"
 
-static lc_assignment a;
 static lc_grade_result r, again;
-
-/* Cheap, and for everybody who claims diffuse surfaces and area lights. */
-#define HEAD "{\"title\": \"T\", \"reference\": \"three_point\", \"bounces\": 1, \"cpu_seconds\": 10, \"mutants_of\": [\"three_point\"],\n"
-#define FIRST \
-    "{\"name\": \"compiles\", \"title\": \"A\", \"kind\": \"descriptor\", \"points\": 1},\n" \
-    "{\"name\": \"finite\", \"title\": \"B\", \"kind\": \"finite\", \"points\": 1, \"scenes\": [\"plane_rectangle\"], \"requires\": [\"compiles\"]},\n"
-#define LAMP \
-    "{\"name\": \"lamp\", \"title\": \"C\", \"kind\": \"check\", \"check\": \"analytic\", \"points\": 4, \"scenes\": [\"random_rectangle\"], " \
-    "\"requires\": [\"finite\"], \"hint\": \"think\"},\n" \
-    "{\"name\": \"more\", \"title\": \"D\", \"kind\": \"descriptor\", \"points\": 1, \"requires\": [\"lamp\"]}"
-
-static void assign(const char *text)
-{
-    lc_error err = {""};
-    ck_assert_msg(read_text_as_assignment(&a, text, &err) == LC_OK, "%s", err.text);
-}
-
-static lc_grade_options options(void)
-{
-    lc_grade_options o;
-    lc_grade_options_init(&o);
-    o.load = load_scene;
-    return o;
-}
-
-static void grade(lc_grade_result *out, const char *path, const lc_grade_options *o)
-{
-    lc_error err = {""};
-    lc_status status = lc_grade_file(out, &a, path, o, &err);
-    ck_assert_msg(status == LC_OK, "%s: %s", path, err.text);
-    ck_assert_int_eq(out->done, out->test_count);
-}
-
-static const lc_estimator *mutant(const char *name)
-{
-    ck_assert_ptr_nonnull(lc_mutant_find(name));
-    return lc_mutant_find(name)->estimator;
-}
 
 /* Writes FILE.c of that text into a folder of its own; the caller removes both. */
 static void write_source(char path[64], const char *text)
@@ -183,9 +144,6 @@ END_TEST
 
 /* ---- a method ------------------------------------------------------------------------------------------------------------------ */
 
-#define METHOD \
-    "\"tests\": [{\"name\": \"method\", \"title\": \"M\", \"kind\": \"variance\", \"points\": 1, \"scenes\": [\"plane_rectangle\"], "
-
 START_TEST(test_grade_method)
 {
     lc_grade_options o = options();
@@ -204,10 +162,6 @@ START_TEST(test_grade_method)
 END_TEST
 
 /* ---- what a student must not see yet --------------------------------------------------------------------------------------------- */
-
-#define SEEN(name, visibility) \
-    "{\"name\": \"" name "\", \"title\": \"A\", \"kind\": \"check\", \"check\": \"analytic\", \"scenes\": [\"light_behind\"], \"points\": 1, " \
-    "\"visibility\": \"" visibility "\"}"
 
 START_TEST(test_grade_withheld)
 {
@@ -407,6 +361,7 @@ Suite *lc_suite_grade(void)
     Suite *suite = suite_create("grade");
     TCase *points = tcase_create("points"), *seen = tcase_create("seen"), *faults = tcase_create("faults"), *cheats = tcase_create("cheats");
     tcase_set_timeout(points, 60);
+    tcase_set_timeout(seen, 60);
     tcase_set_timeout(faults, 60);
     tcase_set_timeout(cheats, 200);
     tcase_add_loop_test(points, test_grade_points, 0, sizeof rows / sizeof rows[0]);
