@@ -2,8 +2,17 @@
  *
  * The report as JSON. JSON has no infinity and no NaN: such a number is null (jansson would drop the key without a word).
  */
-#include "verify/report/report.h"
+#include "verify/report/pictures.h"
 #include "verify/report/safe.h"
+
+/* The files of a row by what they show. */
+static json_t *pictures_json(const lc_row *row)
+{
+    json_t *o = json_object();
+    for (const lc_picture_kind *kind = lc_picture_kinds; o && kind->name; ++kind)
+        json_object_set_new(o, kind->name, json_sprintf("%s%s", row->pictures, kind->ending));
+    return o;
+}
 
 static json_t *row_json(const lc_row *row)
 {
@@ -25,6 +34,8 @@ static json_t *row_json(const lc_row *row)
         json_object_set_new(o, "excluded_missed_contribution", lc_json_number(row->missed));
     if (row->verdict != LC_ROW_PASS)
         json_object_set_new(o, "reason", lc_json_text(row->reason));
+    if (row->pictures[0])
+        json_object_set_new(o, "pictures", pictures_json(row));
     if (row->tile_width && !row->exact)
         json_object_set_new(o, "worst_tile",
                             json_pack("{s:i, s:i, s:i, s:i, s:o, s:o}", "x", row->tile_x, "y", row->tile_y, "width",

@@ -18,7 +18,7 @@ static Suite *(*const suites[])(void) = {
     lc_suite_plugin,   lc_suite_jail,
     lc_suite_similarity, lc_suite_roster, lc_suite_pool, lc_suite_handins,
     lc_suite_formats,  lc_suite_class,          lc_suite_assignment,    lc_suite_grade,
-    lc_suite_rehearse,
+    lc_suite_rehearse, lc_suite_pictures,
 };
 
 int main(void)
