@@ -155,6 +155,14 @@ for id in u000 u002 u005; do
 done
 [ -s again/gradebook.csv ] || wrong 'no gradebook of the shards'
 
+# Late work: the score is max(0, raw - penalty).
+sed 's/"bounces": 1,/&\n  "due": "2020-01-01T00:00:00Z", "late": {"per_day": 0.1, "most": 0.5},/' "$project/verify/tests/class_small.json" >late.json
+"$program" grade few -a late.json -j 2 --seed 7 --roster roster.csv -o late >out 2>err || wrong "late work: $(cat err)"
+awk -F, '$4 == "u000" { print $(NF - 3), $(NF - 2), $(NF - 1), $NF } $4 == "u002" { print $(NF - 3) < 3.5, $(NF - 2), $(NF - 1) }' \
+    late/gradebook.csv >got
+printf '7 3.5 3.5 7\n1 3.5 0\n' | diff - got >difference || wrong "late work (expected <, got >): $(cat difference)"
+grep -q '^late,2020-01-01 00:00:00,20[0-9-]* [0-9:]*,u000,' late/gradebook.csv || wrong 'due date and timestamp'
+
 if [ -n "$results" ]; then
     cp grades/class.txt table
 fi
