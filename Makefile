@@ -59,11 +59,11 @@ CLI  := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard src/cli/*.c))
 TEST := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard verify/tests/*.c))
 # The worker of the jail: the tracer and what it shares with verify/grade; no estimator, no check, no reader of files.
 WORKER := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard src/core/*.c verify/grade/worker/*.c) verify/grade/confine.c verify/grade/wire.c)
-# The proofs of the judge: programs of their own, two of whose files have a main.
-PROOF := $(patsubst %.c,$(BUILD)/obj/%.o,$(filter-out %/calibrate.c %/power.c,$(wildcard verify/proof/*.c)))
+# The proofs of the judge: programs of their own, three of whose files have a main.
+PROOF := $(patsubst %.c,$(BUILD)/obj/%.o,$(filter-out %/calibrate.c %/power.c %/kill.c,$(wildcard verify/proof/*.c)))
 
-.PHONY: all check verify verify-table full-table pictures povray-reference mitsuba-table renderer-study lint asan-check \
-        calibrate power seeds few-seeds judge-mutants mutants gradings bench needs fresh clean help
+.PHONY: all check verify verify-table full-table specular-proof pictures povray-reference mitsuba-table renderer-study lint asan-check \
+        calibrate power seeds few-seeds judge-mutants mutants gradings diagnosis-proof bench needs fresh clean help
 all: $(BUILD)/lightcheck $(BUILD)/lightcheck-worker $(BUILD)/obj/estimators/template.o ## build the program
 
 # A plug-in finds the functions of lightcheck.h in the program, and no others.
@@ -92,7 +92,7 @@ $(BUILD)/obj/texts.o: $(BUILD)/texts.c $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(CC) $(ALL_CFLAGS) -c -o $@ $<
 
-$(BUILD)/calibrate $(BUILD)/power: $(BUILD)/%: $(BUILD)/obj/verify/proof/%.o $(PROOF) $(LIB)
+$(BUILD)/calibrate $(BUILD)/power $(BUILD)/kill: $(BUILD)/%: $(BUILD)/obj/verify/proof/%.o $(PROOF) $(LIB)
 	$(CC) $(LDFLAGS) -o $@ $^ $(ALL_LIBS)
 
 $(BUILD)/obj/verify/tests/%.o: ALL_CFLAGS += $(CHECK_CFLAGS)
@@ -119,6 +119,16 @@ verify-table full-table: all
 	$(BUILD)/lightcheck verify --suite $(SUITE) > $(BUILD)/$@.txt
 	{ printf '# The $(SUITE) suite\n\nMade by `make $@`. On one class of CPU each run gives the same bits.\n\n'; \
 	    printf '```text\n'; cat $(BUILD)/$@.txt; printf '```\n'; } > $(TABLE)
+
+# One row after the other, the cheap ones first; of the corridors nothing is left to chance, they are exact.
+specular-proof: all ## mirrors and glass to 1e-4: results/specular.md (some twenty minutes of one core)
+	for s in $(or $(SCENES),mirror_corridor random_corridor critical_angle glass_sphere glass_slab mirror_sky glass_blend); do \
+	    $(BUILD)/lightcheck verify --suite full -c specular -e dielectric --scene $$s --margin 0.0001 || exit; \
+	done > $(BUILD)/$@.txt
+	{ printf '# Mirrors and glass, to 1e-4\n\nMade by `make $@`: the closed forms of the specular check, '; \
+	    printf 'at a margin of 0.01%% of the mean. On one class of CPU each run gives the same bits.\n\n```text\n'; \
+	    { grep -m 1 '^check ' $(BUILD)/$@.txt; grep '^specular ' $(BUILD)/$@.txt; grep -m 1 '^false FAIL' $(BUILD)/$@.txt; \
+	        grep -m 1 '^false PASS' $(BUILD)/$@.txt; }; printf '```\n'; } > results/specular.md
 
 pictures: all ## the pictures of the README: results/cornell_*.png (about three minutes of one core)
 	for p in light_direct=256 three_point=256 hemisphere_direct=2048 path=2048 mirror=2048 dielectric=2048; do \
@@ -167,9 +177,12 @@ judge-mutants: ## wrong judges, each of which the tests must catch
 bench: all ## how fast the tracer is on this machine: paths a second of one core
 	@sh verify/tests/bench.sh $(BUILD)/lightcheck
 
-mutants: all ## which checks kill which mutants, and that right variants pass: results/mutants.md
-	@sh verify/tests/mutants.sh $(BUILD)/lightcheck quick > $(BUILD)/mutants.md; status=$$?; \
-	    cp $(BUILD)/mutants.md results/mutants.md; exit $$status
+mutants: $(BUILD)/kill ## which checks kill which mutants, and that right variants pass: results/mutants.md
+	$(BUILD)/kill -s $(BUILD)/kill.state -o results/mutants.md
+
+diagnosis-proof: all ## wrong files that diagnose has never seen: results/diagnosis.md
+	@bash verify/tests/diagnosis.sh $(BUILD)/lightcheck $(BUILD)/held_out > $(BUILD)/diagnosis.md; status=$$?; \
+	    cp $(BUILD)/diagnosis.md results/diagnosis.md; exit $$status
 
 gradings: all ## right solutions of every assignment, graded 200 times: results/gradings.md (N=count; goes on where it ended)
 	@sh verify/tests/gradings.sh $(BUILD)/lightcheck $(BUILD)/gradings.log $(or $(N),200) > $(BUILD)/gradings.md; status=$$?; \

@@ -30,6 +30,34 @@ static void show_row(void *user, const lc_row *row, int done, int count)
                 lc_row_verdict_name(row->verdict), done == count ? "\r\033[K" : "");
 }
 
+/* Pictures of what fails, as long as they can be written; what stopped them is told when the verdicts are out. */
+typedef struct album {
+    const char *folder;
+    int count;
+    lc_status status;
+    lc_error err;
+} album;
+
+static void keep_pictures(void *user, lc_row *row, const lc_exhibit *evidence)
+{
+    album *pictures = user;
+    if (pictures->status == LC_OK)
+        pictures->status = lc_report_pictures(row, pictures->folder, ++pictures->count, evidence, &pictures->err);
+}
+
+static void open_album(album *pictures, lc_verify_options *options, const char *folder)
+{
+    memset(pictures, 0, sizeof *pictures);
+    if (!folder)
+        return;
+    pictures->folder = folder;
+    options->on_fail = keep_pictures;
+    options->user = pictures;
+    if (mkdir(folder, 0777) != 0 && errno != EEXIST)
+        pictures->status =
+            lc_fail(&pictures->err, LC_FAULT, "%s: cannot make the folder: %s", folder, strerror(errno));
+}
+
 static lc_status check_names(const verify_arguments *a, lc_error *err)
 {
     int known = !a->check;
@@ -69,8 +97,6 @@ static lc_status write_format(const char *folder, const char *file, const lc_rep
 
 static lc_status write_folder(const char *folder, const lc_report *report, lc_error *err)
 {
-    if (mkdir(folder, 0777) != 0 && errno != EEXIST)
-        return lc_fail(err, LC_FAULT, "%s: cannot make the folder: %s", folder, strerror(errno));
     lc_status status = write_format(folder, "report.txt", report, "text", err);
     if (status == LC_OK)
         status = write_format(folder, "report.json", report, "json", err);
@@ -104,18 +130,19 @@ static lc_status open_estimator(lc_verify_options *options, lc_jail **jail, char
     return LC_OK;
 }
 
-static lc_status write_report(const lc_report *report, const verify_arguments *a, lc_error *err)
+/* First to stdout: the verdicts are not lost where the folder cannot be written. */
+static lc_status write_report(const lc_report *report, const verify_arguments *a, const album *pictures, lc_error *err)
 {
-    lc_status status = a->report ? write_folder(a->report, report, err) : LC_OK;
-    if (status != LC_OK)
-        return status;
+    lc_status status = LC_OK;
     if (strcmp(a->format, "json") == 0)
-        return lc_report_json(stdout, report, err);
-    if (strcmp(a->format, "junit") == 0)
+        status = lc_report_json(stdout, report, err);
+    else if (strcmp(a->format, "junit") == 0)
         lc_report_junit(stdout, report);
     else
         lc_report_text(stdout, report);
-    return LC_OK;
+    if (status == LC_OK && pictures->status != LC_OK)
+        status = lc_fail(err, pictures->status, "%s", pictures->err.text);
+    return status == LC_OK && a->report ? write_folder(a->report, report, err) : status;
 }
 
 static lc_status verify(void *user, const lc_strings *rest, lc_error *err)
@@ -127,6 +154,7 @@ static lc_status verify(void *user, const lc_strings *rest, lc_error *err)
     lc_report report;
     lc_adapter adapter;
     lc_jail *jail = NULL;
+    album pictures;
     char given[200];
     lc_verify_options_init(&options);
     options.suite = lc_suite_find(a->suite);
@@ -158,12 +186,13 @@ static lc_status verify(void *user, const lc_strings *rest, lc_error *err)
         return status;
     if (a->measure)
         return lc_measure_cells(load_scene, options.estimator, a->scene, print_line, NULL, err);
+    open_album(&pictures, &options, a->report);
     status = lc_verify(&report, &options, load_scene, err);
     if (status == LC_OK && report.count == 0)
         status = report.note_count ? lc_fail(err, LC_BAD_INPUT, "nothing to verify: %s", report.notes[0].reason)
                                    : lc_fail(err, LC_BAD_INPUT, "nothing to verify: no check applies to what was selected");
     if (status == LC_OK)
-        status = write_report(&report, a, err);
+        status = write_report(&report, a, &pictures, err);
     if (status == LC_OK && jail)
         fprintf(stderr, "lightcheck verify: %s ran in a jail: %s\n", a->estimator, lc_jail_level(jail));
     if (status == LC_OK)
@@ -198,7 +227,7 @@ static int run(const lc_command *self, int argc, char **argv)
         {0, "format", LC_OPT_CHOICE, &a.format, "text|json|junit", "default text", 0, 0, "text|json|junit"},
         {0, "measure", LC_OPT_FLAG, &a.measure, NULL, "prints the noise of each cell, as verify/judge/suites.c has it",
          0, 0, NULL},
-        {0, "report", LC_OPT_STRING, &a.report, "DIR", "writes all formats there, too", 0, 0, NULL},
+        {0, "report", LC_OPT_STRING, &a.report, "DIR", "writes all formats there, too, and pictures of what fails", 0, 0, NULL},
         {0, NULL, LC_OPT_FLAG, NULL, NULL, NULL, 0, 0, NULL},
     };
     return lc_command_run(self, options, argc, argv, 0, 1 << 20, NULL, verify, &a);

@@ -133,8 +133,11 @@ static lc_status plan_inside(const lc_check *self, lc_claims *claims, const lc_s
     int is_drawn = lc_family_find(lc_scene_description(scene)->name) != NULL;
     for (int k = 1; k <= 8 && k <= estimator->max_bounces; ++k) {
         lc_claim *claim;
-        /* Among diffuse walls mirror and dielectric are path once more: some depths are enough. */
-        if (!is_drawn && !is_plain && (k == 3 || k == 4 || k == 6 || k == 7))
+        /* Among diffuse walls mirror and dielectric are path once more: some depths are enough. Of boards, which are looked up at every
+         * bounce, fewer are: one bounce, where another is needed for the first time, and the deepest. */
+        if (!is_drawn && !is_plain && (varies ? k != 8 : k == 3 || k == 4 || k == 6 || k == 7))
+            continue;
+        if (!is_drawn && varies && is_plain && (k == 3 || (k >= 5 && k <= 7)))
             continue;
         if (is_drawn && k != (estimator->max_bounces > 1 ? 3 : 1) && (k != 6 || !is_plain))
             continue;

@@ -51,7 +51,8 @@ static void describe(lc_row *row, const lc_pyramid *p)
                           : image->still && fabs(row->ratio) < 1e-9
                               ? "not one of its samples carries light, which may be too rare to be met"
                           : image->still  ? "its samples show no variance, which proves nothing"
-                          : image->skewed ? "rare bright samples: the tails are too heavy for this number of samples"
+                          : image->skewed || isinf(row->low) || isinf(row->high)
+                              ? "rare bright samples: the tails are too heavy for this number of samples"
                                           : "the interval is still wider than the margin";
         snprintf(row->reason, sizeof row->reason, "%s on %s: undecided after %llu samples a pixel: %s", row->estimator,
                  row->scene, (unsigned long long)row->samples, why);
@@ -95,6 +96,20 @@ void lc_row_conclude(lc_row *row, const lc_look *look, double alpha_pass)
     row->verdict = look->verdict == LC_PASS ? LC_ROW_PASS : look->verdict == LC_FAIL ? LC_ROW_FAIL : LC_ROW_UNDECIDED;
     fill_numbers(row, &look->hardest, look->channel, look->scale, alpha_pass, (double)row->paths);
     describe(row, &look->hardest);
+}
+
+void lc_row_show(const lc_session *session, lc_row *row, lc_exhibit evidence)
+{
+    if (row->verdict == LC_ROW_FAIL && session->options->on_fail)
+        session->options->on_fail(session->options->user, row, &evidence);
+}
+
+/* Against another film, or where that is NULL, against the expected values. */
+static void show(const lc_session *session, lc_row *row, const lc_film *film, const lc_film *other,
+                 const lc_expected *expected)
+{
+    lc_row_show(session, row,
+                (lc_exhibit){film, other, other ? NULL : expected->rgb, NULL, other ? NULL : expected->skip});
 }
 
 /* Mean over the pixels that are not skipped, of the film or of the expected values. */
@@ -167,6 +182,7 @@ static lc_status judge_exact(lc_row *row, lc_session *session, const lc_claim *c
         lc_row_bad(row, film, session->options->seed);
     else
         compare_exactly(row, film, other, expected, claim->tolerance);
+    show(session, row, film, other, expected);
     return LC_OK;
 }
 
@@ -313,23 +329,63 @@ static void describe_dependence(lc_row *row, const lc_batches *b, int channel)
              row->estimator, row->scene, (int)LC_BLOCK, b->ratio, channel_names[channel], b->log_p / log(10.0));
 }
 
-/* Writes the samples a pixel of each look and returns their number: 1/5, 2/5, 3/5 and all of what is planned, and four times as much in
- * reserve, none beyond `most`. The plan leaves room for a mean 5 standard errors off; most are within one or two, and pass at 2/5 (two
- * rows in three) or 3/5 (98 in 100). One look more or less costs hardly anything: five are paid for at 1% more samples than one of them
- * would need. */
-int lc_row_looks(uint64_t samples[LC_MOST_LOOKS], uint64_t planned, uint64_t most)
+/* What a claim is decided with. */
+typedef struct course {
+    side one, two;
+    const lc_expected *expected; /* where `two` is nobody */
+    lc_looks looks;
+    double alpha; /* of a channel at a look */
+    lc_pyramid_plan plan;
+} course;
+
+/* The films of one look, bad or good; both arms grow together. */
+static lc_status films_of(const lc_film **film, const lc_film **other, lc_session *session, const course *way,
+                          uint64_t samples, lc_error *err)
 {
-    static const double share[LC_MOST_LOOKS] = {0.2, 0.4, 0.6, 1, 4};
-    double all = fmax((double)(planned < most ? planned : most), LC_LEAST_SAMPLES);
-    int count = 0;
-    for (int k = 0; k < LC_MOST_LOOKS; ++k) {
-        uint64_t n = (uint64_t)ceil(share[k] * all / LC_BLOCK) * LC_BLOCK;
-        if (n < LC_LEAST_SAMPLES)
-            n = LC_LEAST_SAMPLES;
-        if (count == 0 || (n > samples[count - 1] && n <= most))
-            samples[count++] = n;
+    *other = NULL;
+    lc_status status = film_of(film, session, &way->one, way->one.arm, samples, err);
+    return status == LC_OK && way->two.estimator ? film_of(other, session, &way->two, way->two.arm, samples, err)
+                                                 : status;
+}
+
+/* Look by look, until something is shown. */
+static lc_status walk(lc_row *row, lc_session *session, const lc_claim *claim, course *way, lc_estimate *field,
+                      lc_error *err)
+{
+    const lc_scene_desc *desc = lc_scene_description(claim->scene);
+    const lc_expected *expected = way->expected;
+    const lc_film *film = NULL, *other = NULL;
+    lc_look result = {.verdict = LC_GO_ON};
+    lc_batches batches;
+    int dependent = -1;
+    for (int k = 0; k < way->looks.count && result.verdict == LC_GO_ON && dependent < 0; ++k) {
+        row->samples = way->looks.samples[k];
+        lc_status status = films_of(&film, &other, session, way, row->samples, err);
+        if (status != LC_OK)
+            return status;
+        row->paths = row->samples * (uint64_t)desc->width * (uint64_t)desc->height;
+        int is_bad = film->bad || (other && other->bad);
+        if (is_bad)
+            lc_row_bad(row, film->bad ? film : other, session->options->seed);
+        else if (claim->may_be_still && expected && is_still(film, expected)) {
+            row->exact = 1;
+            compare_exactly(row, film, NULL, expected, fmax(claim->tolerance, 1e-9));
+        }
+        if (is_bad || row->exact) {
+            show(session, row, film, other, expected);
+            return LC_OK;
+        }
+        status = lc_judge_look(&result, film, other, expected, expected ? expected->skip : NULL, field, &way->plan,
+                               row->margin, claim->tolerance, err);
+        if (status != LC_OK)
+            return status;
+        dependent = dependent_channel(&batches, film, NOISE_SHARE * way->alpha);
     }
-    return count;
+    lc_row_conclude(row, &result, way->plan.alpha_pass);
+    if (dependent >= 0)
+        describe_dependence(row, &batches, dependent);
+    show(session, row, film, other, expected);
+    return LC_OK;
 }
 
 static lc_status judge_statistically(lc_row *row, lc_session *session, const lc_claim *claim, lc_estimate *field,
@@ -338,66 +394,30 @@ static lc_status judge_statistically(lc_row *row, lc_session *session, const lc_
     const lc_scene_desc *desc = lc_scene_description(claim->scene);
     int pixels = desc->width * desc->height;
     double c, c_other = 0;
-    side one = first_side(claim), two = second_side(claim);
-    lc_status status = noise_of(&c, session, &one, err);
-    if (status == LC_OK && two.estimator)
-        status = noise_of(&c_other, session, &two, err);
+    course way = {.one = first_side(claim), .two = second_side(claim)};
+    lc_status status = noise_of(&c, session, &way.one, err);
+    if (status == LC_OK && way.two.estimator)
+        status = noise_of(&c_other, session, &way.two, err);
     if (status != LC_OK)
         return status;
     row->margin = fmax(lc_claim_margin(session, claim, c), claim->margin);
     /* A mean anywhere within the tolerance must be shown to be within the margin. */
     double room = claim->margin > 0 ? row->margin - claim->tolerance : row->margin;
 
-    /* Both arms grow together. */
     uint64_t most = (uint64_t)fmin(session->options->suite->most_samples / pixels, UINT32_MAX);
-    uint64_t looks[LC_MOST_LOOKS];
-    int look_count = lc_row_looks(looks, lc_planned_samples(hypot(c, c_other), room, pixels), most);
+    way.looks = lc_looks_plan(lc_planned_samples(hypot(c, c_other), room, pixels), most);
     lc_budget budget = {session->options->false_fail, session->options->false_pass, session->rows, 3, LC_MOST_LOOKS};
-    lc_pyramid_plan plan;
-    double alpha = lc_budget_row_fail(&budget);
-    lc_pyramid_plan_init(&plan, (1 - NOISE_SHARE) * alpha, lc_budget_row_pass(&budget));
+    way.alpha = lc_budget_row_fail(&budget);
+    lc_pyramid_plan_init(&way.plan, (1 - NOISE_SHARE) * way.alpha, lc_budget_row_pass(&budget));
     if (claim->whole_only)
-        lc_plan_whole(&plan, desc->width, desc->height);
+        lc_plan_whole(&way.plan, desc->width, desc->height);
 
-    const lc_expected *expected = NULL;
     lc_error why = {""};
-    if (!two.estimator)
-        status = lc_session_values(&expected, session, claim, &why);
+    if (!way.two.estimator)
+        status = lc_session_values(&way.expected, session, claim, &why);
     if (status == LC_WRONG)
         return describe_missing(row, &why);
-    if (status != LC_OK)
-        return lc_fail(err, status, "%s", why.text);
-    lc_look result = {.verdict = LC_GO_ON};
-    lc_batches batches;
-    int dependent = -1;
-    for (int k = 0; status == LC_OK && k < look_count && result.verdict == LC_GO_ON && dependent < 0; ++k) {
-        const lc_film *film, *other = NULL;
-        row->samples = looks[k];
-        status = film_of(&film, session, &one, one.arm, row->samples, err);
-        if (status == LC_OK && two.estimator)
-            status = film_of(&other, session, &two, two.arm, row->samples, err);
-        if (status != LC_OK)
-            return status;
-        row->paths = row->samples * (uint64_t)pixels;
-        if (film->bad || (other && other->bad)) {
-            lc_row_bad(row, film->bad ? film : other, session->options->seed);
-            return LC_OK;
-        }
-        if (claim->may_be_still && expected && is_still(film, expected)) {
-            row->exact = 1;
-            compare_exactly(row, film, NULL, expected, fmax(claim->tolerance, 1e-9));
-            return LC_OK;
-        }
-        status = lc_judge_look(&result, film, other, expected, expected ? expected->skip : NULL, field, &plan,
-                               row->margin, claim->tolerance, err);
-        dependent = dependent_channel(&batches, film, NOISE_SHARE * alpha);
-    }
-    if (status != LC_OK)
-        return status;
-    lc_row_conclude(row, &result, plan.alpha_pass);
-    if (dependent >= 0)
-        describe_dependence(row, &batches, dependent);
-    return LC_OK;
+    return status == LC_OK ? walk(row, session, claim, &way, field, err) : lc_fail(err, status, "%s", why.text);
 }
 
 /* By the claim itself, with its share of the budget. */
@@ -459,36 +479,4 @@ lc_status lc_judge_claim(lc_row *row, lc_session *session, const lc_claim *claim
     if (status == LC_WRONG) /* the estimator gave no film: it crashed, or took too long */
         return describe_missing(row, &why);
     return status == LC_OK ? LC_OK : lc_fail(err, status, "%s", why.text);
-}
-
-lc_status lc_compare_films(lc_row *row, const lc_film *a, const lc_film *b, double margin, double false_fail,
-                           double false_pass, lc_error *err)
-{
-    lc_budget budget = {false_fail, false_pass, 1, 3, 1};
-    lc_pyramid_plan plan;
-    lc_estimate *field = malloc(sizeof *field * (size_t)a->width * (size_t)a->height);
-    if (!field)
-        return lc_fail(err, LC_FAULT, "out of memory for the differences");
-    lc_pyramid_plan_init(&plan, lc_budget_row_fail(&budget), lc_budget_row_pass(&budget));
-    lc_look result;
-    lc_status status = lc_judge_look(&result, a, b, NULL, NULL, field, &plan, margin, 0.0, err);
-    free(field);
-    if (status != LC_OK)
-        return status;
-    snprintf(row->check, sizeof row->check, "compare");
-    snprintf(row->scene, sizeof row->scene, "%s", a->scene[0] ? a->scene : "(unknown)");
-    snprintf(row->estimator, sizeof row->estimator, "%s", a->estimator[0] ? a->estimator : "(unknown)");
-    snprintf(row->source, sizeof row->source, "the second image");
-    if (result.scale == 0) {
-        row->verdict = LC_ROW_UNDECIDED;
-        row->ratio = row->low = row->high = NAN;
-        snprintf(row->reason, sizeof row->reason,
-                 "both images are exactly black: equal, but without variance nothing is shown");
-        return LC_OK;
-    }
-    row->margin = margin;
-    row->samples = a->count;
-    row->paths = a->count * (uint64_t)a->width * (uint64_t)a->height;
-    lc_row_conclude(row, &result, plan.alpha_pass);
-    return LC_OK;
 }

@@ -266,6 +266,7 @@ static void compare_still(lc_row *row, const lc_film *film, const reference *r, 
             if (lc_decide_exact(is - should, tolerance * fabs(should) + slack) == LC_PASS)
                 continue;
             row->verdict = LC_ROW_FAIL;
+            row->channel = (int)c;
             snprintf(row->reason, sizeof row->reason, "%s on %s is wrong: pixel %d,%d has %c = %.9g, expected %.9g",
                      row->estimator, row->scene, (int)(i % (size_t)film->width), (int)(i / (size_t)film->width), "RGB"[c],
                      is, should);
@@ -298,6 +299,11 @@ static uint64_t our_samples(double c, double room, int pixels, int look)
     uint64_t planned = lc_planned_samples(c, room, pixels);
     planned = planned < LC_LEAST_SAMPLES ? LC_LEAST_SAMPLES : planned > 1 << 24 ? 1 << 24 : planned;
     return ((planned + LC_BLOCK - 1) / LC_BLOCK * LC_BLOCK) << (2 * look);
+}
+
+static lc_exhibit evidence_of(const lc_film *film, const reference *r)
+{
+    return (lc_exhibit){film, r->film, r->film ? NULL : r->expected->rgb, NULL, r->skip};
 }
 
 typedef struct plan {
@@ -335,8 +341,8 @@ static lc_status judge(lc_row *row, lc_session *session, const lc_claim *claim, 
     lc_budget budget = {o->false_fail, o->false_pass, session->rows, 3, LC_MOST_LOOKS};
     lc_pyramid_plan pyramid;
     lc_look result = {.verdict = LC_GO_ON};
+    foreign_film *f = NULL;
     for (int k = 0; k < LOOKS && result.verdict == LC_GO_ON; ++k) {
-        foreign_film *f;
         uint64_t images = (uint64_t)IMAGES << (2 * k);
         lc_status status = film_of(&f, session, claim, p->samples, 0, images, err);
         if (status == LC_OK && claim->other)
@@ -350,6 +356,7 @@ static lc_status judge(lc_row *row, lc_session *session, const lc_claim *claim, 
         if ((claim->may_be_still || claim->exact) && is_still(f->film, r->skip, slack) &&
             (!r->film || is_still(r->film, r->skip, slack))) {
             compare_still(row, f->film, r, tolerance, slack);
+            lc_row_show(session, row, evidence_of(f->film, r));
             return LC_OK;
         }
         row->exact = 0;
@@ -360,6 +367,7 @@ static lc_status judge(lc_row *row, lc_session *session, const lc_claim *claim, 
             return status;
     }
     lc_row_conclude(row, &result, pyramid.alpha_pass);
+    lc_row_show(session, row, evidence_of(f->film, r));
     return LC_OK;
 }
 

@@ -8,6 +8,7 @@
 
 #include "verify/checks/checks.h"
 #include "verify/renderers/adapter.h"
+#include "verify/report/pictures.h"
 #include "verify/report/report.h"
 
 /* ---- suites ------------------------------------------------------------------------------------------------ */
@@ -54,7 +55,9 @@ typedef struct lc_verify_options {
     const lc_adapter *renderer;    /* another program whose estimator `estimator` is, or NULL */
     /* Called after each row, in the order of the report; may be NULL. */
     void (*on_row)(void *user, const lc_row *row, int done, int count);
-    void *user;
+    /* Called with each row that failed and the images that show it, where there are any; may be NULL. For lc_report_pictures(). */
+    void (*on_fail)(void *user, lc_row *row, const lc_exhibit *evidence);
+    void *user; /* of both */
     const char *program; /* for the reproducing lines */
 } lc_verify_options;
 

@@ -37,8 +37,6 @@ struct lc_session {
     struct lc_foreign *foreign; /* what is known of the renderer under test on this scene; NULL: nothing yet */
 };
 
-enum { LC_MOST_LOOKS = 5 };
-
 /* The film of that stream with exactly `samples` a pixel. The film is the session's. */
 lc_status lc_session_film(const lc_film **out, lc_session *session, const lc_scene *scene,
                           const lc_estimator *estimator, int min_bounces, int max_bounces, uint32_t arm,
@@ -50,6 +48,14 @@ lc_status lc_session_difference(const lc_film **out, lc_session *session, const 
 lc_status lc_session_values(const lc_expected **out, lc_session *session, const lc_claim *claim, lc_error *err);
 /* Drops all films and values: the next scene needs none of them. */
 void lc_session_clear(lc_session *session);
+/* Drops the films of one estimator: what others are held against stays. */
+void lc_session_forget(lc_session *session, const lc_estimator *estimator);
+
+/* Appends what each check claims of the estimator over the scene, of all suites; adds 1 to *not_applicable where none does. */
+lc_status lc_plan_pair(lc_claims *claims, int *not_applicable, const lc_scene *scene, const lc_estimator *estimator,
+                       lc_error *err);
+/* Appends what each claims of the host. */
+lc_status lc_plan_host(lc_claims *claims, lc_error *err);
 
 /* 1 for the estimators that the program ships. */
 int lc_is_registered(const lc_estimator *estimator);
@@ -62,11 +68,9 @@ lc_status lc_judge_claim(lc_row *row, lc_session *session, const lc_claim *claim
 /* The same for a paired claim, in paired.c; room for the differences of one channel in `field`. */
 lc_status lc_judge_paired(lc_row *row, lc_session *session, const lc_claim *claim, lc_estimate *field, lc_error *err);
 
-/* Parts of both. The margin at noise c; a plan for the whole image only; the looks up to the planned samples, and one in
- * reserve, none beyond `most`. */
+/* Parts of both. The margin at noise c; a plan for the whole image only. */
 double lc_claim_margin(const lc_session *session, const lc_claim *claim, double c);
 void lc_plan_whole(lc_pyramid_plan *plan, int width, int height);
-int lc_row_looks(uint64_t samples[LC_MOST_LOOKS], uint64_t planned, uint64_t most);
 /* The same for a claim about the renderer under test, in foreign.c; LC_BAD_INPUT when it refuses the scene, or the claim asks
  * for what no image can tell. */
 lc_status lc_judge_foreign(lc_row *row, lc_session *session, const lc_claim *claim, lc_error *err);
@@ -97,6 +101,8 @@ void lc_row_conclude(lc_row *row, const lc_look *look, double alpha_pass);
 
 /* How hard a channel was: the hardest one is shown. */
 double lc_row_hardness(const lc_pyramid *p, double scale);
+/* Hands the images of a row that failed to whoever asked for them. */
+void lc_row_show(const lc_session *session, lc_row *row, lc_exhibit evidence);
 /* Bad samples, of a film, in words. */
 void lc_row_bad(lc_row *row, const lc_film *film, uint64_t seed);
 

@@ -137,8 +137,7 @@ static lc_status judge(lc_row *row, lc_session *session, const lc_claim *claim, 
     double c = noise_of(film, difference);
     row->margin = lc_claim_margin(session, claim, c);
     uint64_t most = (uint64_t)fmin(session->options->suite->most_samples / pixels, UINT32_MAX);
-    uint64_t looks[LC_MOST_LOOKS];
-    int look_count = lc_row_looks(looks, lc_planned_samples(c, row->margin, pixels), most);
+    lc_looks looks = lc_looks_plan(lc_planned_samples(c, row->margin, pixels), most);
     lc_budget budget = {session->options->false_fail, session->options->false_pass, session->rows, 3, LC_MOST_LOOKS};
     lc_pyramid_plan plan;
     lc_pyramid_plan_init(&plan, lc_budget_row_fail(&budget), lc_budget_row_pass(&budget));
@@ -146,19 +145,22 @@ static lc_status judge(lc_row *row, lc_session *session, const lc_claim *claim, 
      * see, in a tile that none of them has met, that the little that is left is not all. */
     lc_plan_whole(&plan, desc->width, desc->height);
     lc_look result = {.verdict = LC_GO_ON};
-    for (int k = 0; k < look_count && result.verdict == LC_GO_ON; ++k) {
-        row->samples = looks[k];
+    for (int k = 0; k < looks.count && result.verdict == LC_GO_ON; ++k) {
+        row->samples = looks.samples[k];
         row->paths = row->samples * (uint64_t)pixels;
         status = films_of(&film, &difference, session, claim, arm, row->samples, err);
         if (status != LC_OK)
             return status;
-        if (is_settled(row, film, difference, session, claim))
+        if (is_settled(row, film, difference, session, claim)) {
+            lc_row_show(session, row, (lc_exhibit){film, NULL, NULL, difference, NULL});
             return LC_OK;
+        }
         status = judge_look(&result, film, difference, zero, field, &plan, row->margin, claim->tolerance, err);
         if (status != LC_OK)
             return status;
     }
     lc_row_conclude(row, &result, plan.alpha_pass);
+    lc_row_show(session, row, (lc_exhibit){film, NULL, NULL, difference, NULL});
     return LC_OK;
 }
 

@@ -206,6 +206,17 @@ void lc_session_seen(lc_seen *out, const lc_session *session, const lc_claim *cl
             out->bad = session->films[i].film;
 }
 
+void lc_session_forget(lc_session *session, const lc_estimator *estimator)
+{
+    int kept = 0;
+    for (int i = 0; i < session->film_count; ++i)
+        if (session->films[i].estimator == estimator)
+            lc_film_free(session->films[i].film);
+        else
+            session->films[kept++] = session->films[i];
+    session->film_count = kept;
+}
+
 double lc_film_noise(const lc_film *film)
 {
     double most = 0;

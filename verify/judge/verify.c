@@ -34,8 +34,8 @@ lc_status lc_suite_scene(lc_scene **out, const char *name, uint64_t seed, lc_loa
     return status;
 }
 
-static lc_status plan_pair(lc_claims *claims, int *not_applicable, const lc_scene *scene, const lc_estimator *estimator,
-                           lc_error *err)
+lc_status lc_plan_pair(lc_claims *claims, int *not_applicable, const lc_scene *scene, const lc_estimator *estimator,
+                       lc_error *err)
 {
     int before = claims->count;
     for (const lc_check *const *c = lc_checks; *c; ++c) {
@@ -51,12 +51,12 @@ static lc_status plan_scene(lc_claims *claims, int *not_applicable, const lc_ver
                             lc_error *err)
 {
     for (const lc_estimator *const *e = lc_estimators; *e; ++e) {
-        lc_status status = plan_pair(claims, not_applicable, scene, *e, err);
+        lc_status status = lc_plan_pair(claims, not_applicable, scene, *e, err);
         if (status != LC_OK)
             return status;
     }
     if (o->estimator && !lc_is_registered(o->estimator))
-        return plan_pair(claims, not_applicable, scene, o->estimator, err);
+        return lc_plan_pair(claims, not_applicable, scene, o->estimator, err);
     return LC_OK;
 }
 
@@ -76,7 +76,7 @@ static void keep_suite(lc_claims *claims, const lc_suite *suite, const lc_adapte
     claims->count = kept;
 }
 
-static lc_status plan_host(lc_claims *claims, lc_error *err)
+lc_status lc_plan_host(lc_claims *claims, lc_error *err)
 {
     lc_status status = LC_OK;
     for (const lc_check *const *c = lc_checks; *c && status == LC_OK; ++c)
@@ -140,7 +140,7 @@ lc_status lc_verify(lc_report *report, const lc_verify_options *options, lc_load
     while (lc_suite_scenes[suite_scenes])
         ++suite_scenes;
     scenes = calloc((size_t)suite_scenes, sizeof *scenes);
-    status = scenes ? plan_host(&claims, err) : lc_fail(err, LC_FAULT, "out of memory for the scenes");
+    status = scenes ? lc_plan_host(&claims, err) : lc_fail(err, LC_FAULT, "out of memory for the scenes");
     for (int i = 0; i < suite_scenes && status == LC_OK; ++i) {
         status = lc_suite_scene(&scenes[scene_count], lc_suite_scenes[i], options->seed, load, err);
         if (status == LC_OK)

@@ -31,7 +31,9 @@ enum {
     CUBE = 1 << 22,
     WHOLE_SPHERE = 1 << 23,
     AREA_TWICE = 1 << 24,
-    LIGHT_SQUARED = 1 << 25
+    LIGHT_SQUARED = 1 << 25,
+    SHADOWED_BY_LIGHT = 1 << 26,
+    COMPARES_DISTANCES = 1 << 27
 };
 
 /* The normal on the viewer's side. */
@@ -48,6 +50,17 @@ static double cosine_of(const lc_hit *hit, lc_vec3 wi, unsigned bugs)
 static double surface_factor(unsigned bugs, double cos_surface)
 {
     return (bugs & NO_COSINE ? 1.0 : cos_surface) * (bugs & NO_PI ? LC_PI : 1.0) * (bugs & ONE_PERCENT ? 1.01 : 1.0);
+}
+
+/* A shadow ray, or what somebody took for one: a ray that may meet nothing at all, or nothing nearer than the light, to the last bit. */
+static int is_visible(const lc_scene *scene, const lc_hit *hit, const lc_light_sample *light, unsigned bugs)
+{
+    lc_hit next;
+    if (bugs & NO_VISIBILITY)
+        return 1;
+    if (!(bugs & (SHADOWED_BY_LIGHT | COMPARES_DISTANCES)))
+        return lc_visible(scene, hit, light);
+    return !lc_trace(scene, hit, light->wi, &next) || (bugs & COMPARES_DISTANCES && next.distance >= light->distance);
 }
 
 /* Moves the point to the light's centre, roughly: distance and cosines are then those of the centre. */
@@ -104,7 +117,7 @@ static lc_rgb by_light(const lc_scene *scene, const lc_hit *hit, lc_sampler *sam
         cos_light = bugs & NO_LIGHT_COSINE ? 1.0 : bugs & LIGHT_SQUARED ? cos_light * cos_light : cos_light;
         incoming = lc_rgb_scale(cos_light * area / d2, light.radiance);
     }
-    if (!(bugs & NO_VISIBILITY) && !lc_visible(scene, hit, &seen))
+    if (!is_visible(scene, hit, &seen, bugs))
         return lc_black();
     double lights = bugs & (NO_LIGHT_COUNT | FIRST_ONLY) ? 1.0 : count;
     return lc_rgb_scale(lights * surface_factor(bugs, cos_surface),
@@ -144,7 +157,7 @@ static lc_rgb by_area(const lc_scene *scene, const lc_hit *hit, lc_sampler *samp
     double cos_surface = cosine_of(hit, light.wi, bugs), cos_light = -lc_dot(light.n, light.wi);
     if (bugs & BACK_EMITS)
         cos_light = fabs(cos_light);
-    if (!(cos_surface > 0 && cos_light > 0) || (!(bugs & NO_VISIBILITY) && !lc_visible(scene, hit, &light)))
+    if (!(cos_surface > 0 && cos_light > 0) || !is_visible(scene, hit, &light, bugs))
         return lc_black();
     double d2 = light.distance * light.distance;
     if (bugs & NO_COSINE)
@@ -237,6 +250,9 @@ static lc_rgb sum(direct_fn *direct, unsigned bugs, const lc_scene *scene, const
       "Move the camera only: may a matte surface's brightness change?") \
     X(light_no_visibility, NO_VISIBILITY, "no shadow ray", "visibility", \
       "Left for later.", "shadows: no darkness", "Put something between surface and light.") \
+    X(light_shadow_hits_light, SHADOWED_BY_LIGHT, "the shadow ray hits its own lamp", "visibility", \
+      "The ray is not ended before the lamp.", "lamps with area: black; point lights are blind", \
+      "What is the first thing that your shadow ray may meet?") \
     X(light_no_distance, NO_DISTANCE, "1 / d^2 is missing", "distance", \
       "Area is not turned into solid angle.", "scene s times as large: s^2", \
       "Make the scene twice as large: what stays the same?") \
@@ -295,6 +311,10 @@ const lc_mutant lc_light_mutants[] = {LIGHT(LC_MUTANT_ROW) LC_MUTANT_END};
       "Which sides of a lamp shine?") \
     X(three_point_no_visibility, NO_VISIBILITY, "no shadow ray", "visibility", \
       "V in the integral is overlooked.", "shadows: no darkness", "Put something between surface and light.") \
+    X(three_point_shadow_compares, COMPARES_DISTANCES, "a shadow ray's distance is compared with the lamp's to the last bit", \
+      "visibility", \
+      "Rounding decides whether the lamp hides itself.", "speckle: some of the light is missing everywhere", \
+      "What is the first thing that your shadow ray may meet?") \
     X(three_point_uniform_pick, UNIFORM_PICK, "lights chosen uniformly, density of the union of their areas", \
       "density", \
       "Choice and density come from two places.", "unequal areas: 2.28; equal ones are blind", \

@@ -29,7 +29,8 @@ enum {
     CHOICE_FORGOTTEN = 524288,
     DEAD_FIRST = 1048576,
     COSINE_AGAIN = 2097152,
-    NO_PI = 4194304
+    NO_PI = 4194304,
+    OTHER_DENSITY = 8388608
 };
 
 static double light_pdf(const lc_scene *scene, double pdf_area, double distance, double cos_light, unsigned bugs)
@@ -63,6 +64,8 @@ static lc_rgb direct(const lc_scene *scene, const lc_hit *hit, double q, lc_samp
     if (!(cos_surface > 0 && cos_light > 0 && lc_rgb_max(f) > 0) || !lc_visible(scene, hit, &light))
         return lc_black();
     double pdf_bsdf = q * (bugs & FULL ? lc_bsdf_pdf(scene, hit, light.wi) : cos_surface * LC_INV_PI);
+    if (bugs & OTHER_DENSITY)
+        pdf_bsdf = 0.5 * LC_INV_PI;
     if (light.is_delta) {
         double weight = bugs & DELTA_WEIGHTED ? share(1, pdf_bsdf, bugs) : 1;
         return lc_rgb_scale(weight * count * cos_surface, lc_rgb_mul(f, light.irradiance));
@@ -221,6 +224,8 @@ NEE_MUTANT(mis_delta_weighted, MIS | DELTA_WEIGHTED, "path_mis", LC_DIFFUSE, ALL
            "a point light is weighted against the BRDF, which never finds it");
 NEE_MUTANT(mis_sum_not_one, MIS | SUM_NOT_ONE, "path_mis", LC_DIFFUSE, ALL,
            "power heuristic for one technique, balance for the other");
+NEE_MUTANT(mis_other_density, MIS | OTHER_DENSITY, "path_mis", LC_DIFFUSE, ALL,
+           "directions by the cosine, but one of the weights by a uniform density");
 NEE_MUTANT(mis_power_hit_weight_one, MIS | POWER | HIT_WEIGHT_ONE, "path_mis_power", LC_DIFFUSE, ALL,
            "power heuristic, and a light that the path hits has weight 1");
 NEE_MUTANT(mis_power_area_density, MIS | POWER | AREA_DENSITY, "path_mis_power", LC_DIFFUSE, ALL,
@@ -300,6 +305,10 @@ const lc_mutant lc_nee_mutants[] = {
      "The heuristic was changed in one of two places.",
      "local, where the techniques compete",
      "For one and the same path, do the weights of the two techniques add up to 1?"},
+    {&lc_estimator_mis_other_density, "path_mis", "weights",
+     "The function that draws and the one that knows the density are not of the same distribution.",
+     "local, where the techniques compete",
+     "Does the density in your weight belong to the directions that you draw?"},
     {&lc_estimator_mis_power_hit_weight_one, "path_mis_power", "weights",
      "Only one of the two techniques got its weight.",
      "near a large lamp: up to 2",

@@ -26,7 +26,8 @@ enum {
     ROULETTE_CAPPED = 1 << 18,
     HALF_DENSITY = 1 << 19,
     GAMMA = 1 << 20,
-    EMISSION_UNWEIGHTED = 1 << 21
+    EMISSION_UNWEIGHTED = 1 << 21,
+    ROULETTE_DIMMEST = 1 << 22
 };
 
 /* f cos_surface / pdf_solid, and the direction. `k` reflections came before. */
@@ -75,6 +76,10 @@ static int counts(unsigned bugs, const lc_options *options, const lc_hit *hit, i
 static double roulette(unsigned bugs, lc_rgb throughput, lc_sampler *sampler)
 {
     double q = fmin(lc_rgb_max(throughput), 1);
+    if (bugs & ROULETTE_DIMMEST) {
+        q = fmin(1, fmin(throughput.r, fmin(throughput.g, throughput.b)));
+        return q > 0.05 && lc_next(sampler) < q ? 1 / q : 0;
+    }
     if (bugs & ROULETTE_INVERTED)
         q = fmin(fmax(q, 0.05), 0.95);
     else if (!(bugs & ROULETTE_CAPPED))
@@ -178,7 +183,11 @@ static lc_rgb walk(unsigned bugs, const lc_scene *scene, const lc_hit *first, co
       "How often does a path survive, and what are survivors divided by?") \
     X(path_roulette_capped, ROULETTE_CAPPED, "survival is capped at 1/2, the division is not", "roulette", \
       "A cap added in one of two places (chunky-dev/chunky issue 1018: survivors of one half are not scaled).", \
-      "bounce k: 1 / 2^k and less", "How often does a path survive, and what are survivors divided by?")
+      "bounce k: 1 / 2^k and less", "How often does a path survive, and what are survivors divided by?") \
+    X(path_roulette_dimmest, ROULETTE_DIMMEST, "roulette by the dimmest channel: q -> 0 ends paths that carry light", \
+      "roulette", \
+      "A path of saturated colour has q near 0; it is ended before 1 / q blows up.", "after some coloured walls: too dark", \
+      "May a path end for certain while one of its channels is alive?")
 
 PATH(PATH_MUTANT)
 

@@ -14,7 +14,10 @@
 #include "verify/proof/synthetic.h"
 #include "verify/stats/stats.h"
 
-enum { SIDE = 8, PIXELS = SIDE * SIDE, TRIALS = 10000, LOOKS = 5 };
+enum { SIDE = 8, PIXELS = SIDE * SIDE, TRIALS = 10000 };
+
+/* Samples a pixel that a row plans for. */
+enum { PLANNED = 5 * LC_LEAST_SAMPLES };
 
 static const double ALPHA = 0.01;
 
@@ -73,14 +76,14 @@ static void row_trial(void *user, int trial)
         expected[3 * i] = c->law.mean * brightness(c, i);
     lc_stream_start(&stream, c->seed, c->experiment, (uint64_t)trial);
 
-    lc_looks looks = lc_looks_plan(LC_LEAST_SAMPLES, LC_LEAST_SAMPLES << (2 * (LOOKS - 1)));
+    lc_looks looks = lc_looks_plan(PLANNED, UINT32_MAX);
     lc_budget budget = {ALPHA, ALPHA, 1, 1, looks.count};
     lc_pyramid_plan plan;
     lc_pyramid_plan_init(&plan, lc_budget_row_fail(&budget), lc_budget_row_pass(&budget));
     int top = lc_pyramid_levels(SIDE, SIDE) - 1;
     double shift = 0, tolerance = 0;
     if (c->at_bound) { /* FAIL would be right, and hide a false PASS: a declared error puts it out of reach */
-        plan.margin[top] = 6 * sqrt(c->arms) * first_error(c, looks.first);
+        plan.margin[top] = 6 * sqrt(c->arms) * first_error(c, looks.samples[0]);
         shift = trial % 2 ? plan.margin[top] : -plan.margin[top];
         tolerance = 2 * plan.margin[top];
     }
@@ -88,7 +91,7 @@ static void row_trial(void *user, int trial)
     lc_pyramid out;
     int look = 0;
     for (; look < looks.count && verdict == LC_GO_ON; ++look) {
-        uint64_t more = lc_looks_samples(&looks, look) - film[0].count;
+        uint64_t more = looks.samples[look] - film[0].count;
         add_samples(&film[0], c, more, shift, &stream);
         if (c->arms == 2)
             add_samples(&film[1], c, more, 0, &stream);
@@ -232,14 +235,15 @@ static lc_status report(FILE *table, int *broken, uint64_t seed, lc_error *err)
                            lc_law_lognormal(0.75), lc_law_lognormal(1.2), lc_law_coin(0.0096, 100)};
     const lc_law beyond[] = {lc_law_firefly(1e-3, 1000), lc_law_firefly(1e-4, 10000)};
     const int count = (int)(sizeof laws / sizeof laws[0]);
+    lc_looks looks = lc_looks_plan(PLANNED, UINT32_MAX);
     fprintf(
         table,
         "\nFalse verdicts of the judge, at levels that can be counted (%.2g) and, below, at those at which it works. "
-        "%dx%d\npixels, %d looks at %d 4^k samples, the budget of %.2g split over looks, levels and tiles by the "
-        "judge's own functions.\nA rate `holds` when its interval (Clopper and Pearson) contains the level or lies "
+        "%dx%d\npixels, looks at %llu to %llu samples (1/5, 2/5, 3/5, 1 and 4 times a plan, as in the judge), the budget of %.2g split "
+        "over looks, levels and\ntiles: plan, split and verdict by the judge's own functions.\nA rate `holds` when its interval (Clopper and Pearson) contains the level or lies "
         "under it.\n"
         "Uneven images have pixels 1/16 to 16 times as bright.\n",
-        ALPHA, SIDE, SIDE, (int)LOOKS, (int)LC_LEAST_SAMPLES, ALPHA);
+        ALPHA, SIDE, SIDE, (unsigned long long)looks.samples[0], (unsigned long long)looks.samples[looks.count - 1], ALPHA);
     fprintf(table, "\n## False FAIL: nothing is wrong\n\n`Out of reach at the end`: rows whose whole image was still "
                    "guarded against its tails at the last look.\n\n");
     *broken += report_rows(table, seed, laws, count, 0, 0);

@@ -53,6 +53,7 @@ typedef struct experiment {
     const lc_estimator *arm[2]; /* arm[1] NULL: `expected` */
     const lc_expected *expected;
     uint64_t seed, number;
+    lc_looks looks; /* the least that a row can have: LOOKS of them */
     outcome *outcomes;
     lc_status *status;
 } experiment;
@@ -162,7 +163,7 @@ static void null_trial(void *user, int trial)
     for (int arm = 0; arm < 2 && status == LC_OK; ++arm)
         status = lc_film_create(&film[arm], SIDE, SIDE, NULL);
     for (int look = 0; look < LOOKS && status == LC_OK; ++look) {
-        uint64_t samples = (uint64_t)LC_LEAST_SAMPLES << (2 * look);
+        uint64_t samples = e->looks.samples[look];
         status = grow(film[0], e, 0, trial, samples);
         if (status == LC_OK && e->arm[1])
             status = grow(film[1], e, 1, trial, samples);
@@ -179,7 +180,7 @@ static void null_trial(void *user, int trial)
 /* The claim of the analytic check about the first arm; what it expects is the session's. */
 static lc_status find_expected(experiment *e, lc_session *session, lc_error *err)
 {
-    lc_claims claims = {NULL, 0};
+    lc_claims claims = {.count = 0};
     lc_status status = LC_OK;
     for (const lc_check *const *c = lc_checks; *c && status == LC_OK; ++c)
         if (strcmp((*c)->name, "analytic") == 0)
@@ -256,13 +257,13 @@ static void add_totals(totals *sum, const experiment *e)
             }
 }
 
-static int print_totals(FILE *table, const char *kind, const totals *sum)
+static int print_totals(FILE *table, const char *kind, const totals *sum, const lc_looks *looks)
 {
     int broken = 0;
     for (int l = 0; l < LEVELS; ++l)
         for (int k = 0; k < LOOKS; ++k) {
-            fprintf(table, "| %s | %dx%d | %d | %ld |", kind, 1 << l, 1 << l, LC_LEAST_SAMPLES << (2 * k),
-                    sum->tested[k][l]);
+            fprintf(table, "| %s | %dx%d | %llu | %ld |", kind, 1 << l, 1 << l,
+                    (unsigned long long)looks->samples[k], sum->tested[k][l]);
             for (int r = 0; r < RATES; ++r) {
                 double expected = rates[r] * (double)sum->tested[k][l];
                 int is_broken = exceeds(sum->judged[k][l][r], sum->tested[k][l], rates[r], 2 * LOOKS * LEVELS * RATES);
@@ -277,18 +278,18 @@ static int print_totals(FILE *table, const char *kind, const totals *sum)
 
 /* ---- the section -------------------------------------------------------------------------------------------- */
 
-static void print_head(FILE *table)
+static void print_head(FILE *table, const lc_looks *looks)
 {
     fprintf(table,
-            "\n## Rendered nulls\n\n%dx%d pixels, one channel, looks at %d and %d samples, the budget split over looks, "
+            "\n## Rendered nulls\n\n%dx%d pixels, one channel, looks at %llu and %llu samples, the budget split over looks, "
             "levels and tiles. Each film has\na seed of its own. Embree's last bits differ between kinds of CPU, and "
             "these counts may with them.\n\n"
             "| scene | estimator | against | bounces | comparisons | false FAILs at %g: rate, 95%% interval | at %g "
             "|\n|---|---|---|---|---|---|---|\n",
-            (int)SIDE, (int)SIDE, (int)LC_LEAST_SAMPLES, LC_LEAST_SAMPLES << 2, alphas[0], alphas[1]);
+            (int)SIDE, (int)SIDE, (unsigned long long)looks->samples[0], (unsigned long long)looks->samples[1], alphas[0], alphas[1]);
 }
 
-static int print_tiles(FILE *table, const totals *one, const totals *two)
+static int print_tiles(FILE *table, const totals *one, const totals *two, const lc_looks *looks)
 {
     fprintf(table,
             "\nThe same tile by tile: how often a tile alone, tested at a level of its own, is called wrong, over that "
@@ -300,22 +301,24 @@ static int print_tiles(FILE *table, const totals *one, const totals *two)
     for (int r = 0; r < RATES; ++r)
         fprintf(table, " %g |", rates[r]);
     fprintf(table, "\n|---|---|---|---|---|---|---|---|\n");
-    return print_totals(table, "closed form", one) + print_totals(table, "another film", two);
+    return print_totals(table, "closed form", one, looks) + print_totals(table, "another film", two, looks);
 }
 
 lc_status lc_rendered_report(FILE *table, int *broken, uint64_t seed, lc_error *err)
 {
     const int count = (int)(sizeof cases / sizeof cases[0]);
+    const lc_looks looks = lc_looks_plan(LC_LEAST_SAMPLES, UINT32_MAX);
     static totals sums[2]; /* against closed forms, another film */
     lc_verify_options options;
     lc_verify_options_init(&options);
     lc_session session = {.options = &options};
     lc_status status = LC_OK;
     memset(sums, 0, sizeof sums);
-    print_head(table);
+    print_head(table, &looks);
     for (int i = 0; i < count && status == LC_OK; ++i) {
         size_t trials = (size_t)cases[i].trials;
         experiment e = {.what = &cases[i], .seed = seed, .number = (uint64_t)i + 1};
+        e.looks = looks;
         e.outcomes = calloc(trials, sizeof *e.outcomes);
         e.status = calloc(trials, sizeof *e.status);
         status = e.outcomes && e.status ? run_case(&e, &session, err) : lc_fail(err, LC_FAULT, "out of memory");
@@ -327,6 +330,6 @@ lc_status lc_rendered_report(FILE *table, int *broken, uint64_t seed, lc_error *
         free(e.status);
     }
     if (status == LC_OK)
-        *broken += print_tiles(table, &sums[0], &sums[1]);
+        *broken += print_tiles(table, &sums[0], &sums[1], &looks);
     return status;
 }

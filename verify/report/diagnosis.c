@@ -23,7 +23,8 @@ static void print_names(FILE *out, const lc_diagnosis *d)
         return;
     }
     if (d->name_count) {
-        fprintf(out, "not all was decided; what was shown equal to it, while the truth was not:\n");
+        fprintf(out, d->is_certain ? "behaves exactly as any of these, which no view tells apart:\n"
+                                   : "not all was decided; what was shown equal to it, while the truth was not:\n");
         for (int i = 0; i < d->name_count; ++i)
             fprintf(out, "  %s: %s\n", d->names[i]->estimator->name, d->names[i]->estimator->summary);
         return;
@@ -60,4 +61,5 @@ void lc_report_diagnosis(FILE *out, const lc_diagnosis *d, const char *name, lc_
     print_names(out, d);
     for (int i = 0; i < d->line_count; ++i)
         fprintf(out, "  measured: %s\n", d->lines[i]);
+    fprintf(out, "  against %d known bugs on %d views, %.1f M paths\n", d->candidates, d->view_count, (double)d->paths * 1e-6);
 }

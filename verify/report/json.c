@@ -5,9 +5,18 @@
 #include <jansson.h>
 #include <math.h>
 
-#include "verify/report/report.h"
+#include "verify/report/pictures.h"
 
 static json_t *number(double value) { return isfinite(value) ? json_real(value) : json_null(); }
+
+/* The files of a row by what they show. */
+static json_t *pictures_json(const lc_row *row)
+{
+    json_t *o = json_object();
+    for (const lc_picture_kind *kind = lc_picture_kinds; o && kind->name; ++kind)
+        json_object_set_new(o, kind->name, json_sprintf("%s%s", row->pictures, kind->ending));
+    return o;
+}
 
 static json_t *row_json(const lc_row *row)
 {
@@ -29,6 +38,8 @@ static json_t *row_json(const lc_row *row)
         json_object_set_new(o, "excluded_missed_contribution", number(row->missed));
     if (row->verdict != LC_ROW_PASS)
         json_object_set_new(o, "reason", json_string(row->reason));
+    if (row->pictures[0])
+        json_object_set_new(o, "pictures", pictures_json(row));
     if (row->tile_width && !row->exact)
         json_object_set_new(o, "worst_tile",
                             json_pack("{s:i, s:i, s:i, s:i, s:o, s:o}", "x", row->tile_x, "y", row->tile_y, "width",

@@ -9,6 +9,8 @@
 
 #include "core/host.h"
 
+enum { LC_MOST_PATH = 1024 };
+
 typedef enum lc_row_verdict { LC_ROW_PASS, LC_ROW_FAIL, LC_ROW_UNDECIDED } lc_row_verdict;
 
 /* One claim, decided. Relative numbers are in units of the expected mean of reflected light. */
@@ -33,6 +35,7 @@ typedef struct lc_row {
         missed; /* PASS: the largest contribution that could have been missed, in units of the mean of a sample; else 0 */
     char reason[512];    /* in words, for FAIL and UNDECIDED */
     char reproduce[640]; /* a command line */
+    char pictures[LC_MOST_PATH]; /* FAIL: how the names of its pictures begin, with their folder (pictures.h); empty: none */
 } lc_row;
 
 /* What no row can be about, and why. */

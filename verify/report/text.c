@@ -51,6 +51,9 @@ static void print_trouble(FILE *out, const lc_row *row)
     if (row->tile_width && !row->exact)
         fprintf(out, "    worst tile: %dx%d pixels at %d,%d: %.4g times what is expected there, p = 1e%.0f\n",
                 row->tile_width, row->tile_height, row->tile_x, row->tile_y, row->tile_ratio, row->tile_log10_p);
+    if (row->pictures[0])
+        fprintf(out, "    pictures: %s.difference.png (red: too much, blue: too little), .is, .expected, .difference, each .exr and .png\n",
+                row->pictures);
     fprintf(out, "    again: %s\n", row->reproduce);
 }
 

@@ -46,18 +46,20 @@ int lc_budget_text(char *text, size_t size, const lc_budget *b, int width, int h
     return length;
 }
 
-lc_looks lc_looks_plan(uint64_t least, uint64_t most)
+lc_looks lc_looks_plan(uint64_t planned, uint64_t most)
 {
-    lc_looks looks = {most, 1};
-    while (looks.first / 4 >= least) {
-        looks.first /= 4;
-        ++looks.count;
+    static const double share[LC_MOST_LOOKS] = {0.2, 0.4, 0.6, 1, 4};
+    double all = fmax((double)(planned < most ? planned : most), LC_LEAST_SAMPLES);
+    lc_looks looks = {{0}, 0};
+    for (int k = 0; k < LC_MOST_LOOKS; ++k) {
+        uint64_t n = (uint64_t)ceil(share[k] * all / LC_BLOCK) * LC_BLOCK;
+        if (n < LC_LEAST_SAMPLES)
+            n = LC_LEAST_SAMPLES;
+        if (looks.count == 0 || (n > looks.samples[looks.count - 1] && n <= most))
+            looks.samples[looks.count++] = n;
     }
-    looks.first = (looks.first + LC_BLOCK - 1) / LC_BLOCK * LC_BLOCK;
     return looks;
 }
-
-uint64_t lc_looks_samples(const lc_looks *looks, int k) { return looks->first << (2 * k); }
 
 double lc_samples_needed(double c, double margin, double z)
 {

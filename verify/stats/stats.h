@@ -10,7 +10,7 @@
  *     lc_pyramid_plan plan;
  *     lc_pyramid_plan_init(&plan, lc_budget_row_fail(&budget), lc_budget_row_pass(&budget));
  *     for (int k = 0; k < looks.count && verdict == LC_GO_ON; ++k) {
- *         options.first = film->count, options.count = lc_looks_samples(&looks, k) - film->count;
+ *         options.first = film->count, options.count = looks.samples[k] - film->count;
  *         status = lc_render(film, scene, estimator, &options, err);
  *         verdict = LC_PASS;
  *         for (int c = 0; c < 3 && !status; ++c) {

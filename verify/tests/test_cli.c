@@ -546,6 +546,39 @@ START_TEST(verify_has_formats)
     ck_assert_int_eq(access(in_folder("report/report.json"), R_OK), 0);
     ck_assert_int_eq(access(in_folder("report/report.xml"), R_OK), 0);
     run_bad(FAULT, "no/such", "verify", "-c", "emission", "--scene", "glass_sphere", "--report", in_folder("no/such"));
+    ck_assert_ptr_nonnull(strstr(ran.out, " PASS ")); /* the verdicts are not lost with the folder */
+}
+END_TEST
+
+/* What a FAIL looks like, and where that is said. */
+START_TEST(verify_draws_what_fails)
+{
+#define WRONG_PLANE "verify", "-c", "analytic", "-e", "light_no_pi", "--scene", "plane_rectangle"
+    const char *report = in_folder("report");
+    run(WRONG, WRONG_PLANE, "--report", report);
+    char line[256];
+    snprintf(line, sizeof line, "pictures: %s/001_analytic_plane_rectangle_light_no_pi_1-1.difference.png", report);
+    ck_assert_msg(strstr(ran.out, line) != NULL, "%s", ran.out);
+    json_t *root = json_load_file(in_folder("report/report.json"), 0, NULL);
+    json_t *pictures = json_object_get(json_array_get(json_object_get(root, "rows"), 0), "pictures");
+    const char *name;
+    json_t *path;
+    ck_assert_uint_eq(json_object_size(pictures), 6);
+    json_object_foreach(pictures, name, path)
+        ck_assert_msg(access(json_string_value(path), R_OK) == 0, "%s: %s", name, json_string_value(path));
+    lc_film *film;
+    ck_assert_int_eq(lc_exr_read(&film, json_string_value(json_object_get(pictures, "difference")), NULL), LC_OK);
+    ck_assert(film->pixels[0].c[0].mean > 0); /* pi times too much */
+    lc_film_free(film);
+    json_decref(root);
+
+    ck_assert(chmod(folder, 0755) == 0 && chmod(report, 0555) == 0);
+    run_list((const char *const[]){WRONG_PLANE, "--report", report, NULL}, 1);
+    ck_assert_int_eq(chmod(report, 0755), 0);
+    ck_assert_int_eq(ran.status, FAULT);
+    ck_assert_msg(strstr(ran.err, "Permission denied") && strstr(ran.err, "report/001_"), "%s", ran.err);
+    ck_assert_ptr_nonnull(strstr(ran.out, " FAIL "));
+    ck_assert_ptr_null(strstr(ran.out, "pictures:"));
 }
 END_TEST
 
@@ -614,6 +647,7 @@ Suite *lc_suite_cli(void)
     tcase_add_test(tc, sample_repeats_what_render_saw);
     tcase_add_test(tc, verify_says_pass_or_fail);
     tcase_add_test(tc, verify_has_formats);
+    tcase_add_test(tc, verify_draws_what_fails);
     suite_add_tcase(suite, tc);
     tc = tcase_create("signals");
     tcase_set_timeout(tc, 120);

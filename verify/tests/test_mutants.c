@@ -140,6 +140,10 @@ static const struct row {
     {"dielectric_ior_once", "specular", "glass_blend"},
     {"dielectric_ior_squared_inverted", "specular", "glass_blend"},
     {"dielectric_half_and_half", "specular", "glass_slab"},
+    {"light_shadow_hits_light", "analytic", "mixed_lights"},
+    {"three_point_shadow_compares", "analytic", "plane_tilted"},
+    {"mis_other_density", "analytic", "mixed_lights"},
+    {"path_roulette_dimmest", "furnace", "furnace_sphere"},
 };
 enum { ROWS = sizeof rows / sizeof rows[0] };
 

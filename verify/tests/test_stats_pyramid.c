@@ -103,14 +103,23 @@ START_TEST(budget_is_spent_once)
 }
 END_TEST
 
-START_TEST(looks_grow_by_four)
+START_TEST(looks_are_shares_of_the_plan)
 {
-    lc_looks looks = lc_looks_plan(256, 5000);
-    ck_assert_int_eq(looks.count, 3);
-    ck_assert_uint_eq(lc_looks_samples(&looks, 0), 320); /* 5000 / 16 in whole blocks */
-    ck_assert_uint_eq(lc_looks_samples(&looks, 2), 5120);
-    looks = lc_looks_plan(256, 100);
-    ck_assert(looks.count == 1 && looks.first == 128);
+    static const uint64_t by_hand[] = {2048, 4096, 6144, 10240, 40832}; /* in whole blocks of 64 */
+    lc_looks looks = lc_looks_plan(10200, 1 << 20);
+    ck_assert_int_eq(looks.count, 5);
+    for (int k = 0; k < 5; ++k)
+        ck_assert_uint_eq(looks.samples[k], by_hand[k]);
+    looks = lc_looks_plan(10200, 20000); /* no reserve beyond the cap */
+    ck_assert(looks.count == 4 && looks.samples[3] == 10240);
+    looks = lc_looks_plan(1 << 20, 10240); /* the cap is the plan */
+    ck_assert(looks.count == 4 && looks.samples[0] == 2048 && looks.samples[3] == 10240);
+    looks = lc_looks_plan(1000, 1 << 20); /* the first share lies below the floor, which is looked at once */
+    ck_assert(looks.count == 5 && looks.samples[0] == LC_LEAST_SAMPLES && looks.samples[1] == 448);
+    looks = lc_looks_plan(100, 1 << 20);
+    ck_assert(looks.count == 2 && looks.samples[0] == LC_LEAST_SAMPLES && looks.samples[1] == 1024);
+    looks = lc_looks_plan(100, 10); /* somebody has to look once */
+    ck_assert(looks.count == 1 && looks.samples[0] == LC_LEAST_SAMPLES);
     check_close(lc_samples_needed(2, 0.01, 11), 2200.0 * 2200.0, 1e-14);
 }
 END_TEST
@@ -423,7 +432,7 @@ Suite *lc_suite_stats_pyramid(void)
     TCase *cases = tcase_create("pyramid");
     tcase_add_test(cases, levels_cover_any_size);
     tcase_add_test(cases, budget_is_spent_once);
-    tcase_add_test(cases, looks_grow_by_four);
+    tcase_add_test(cases, looks_are_shares_of_the_plan);
     tcase_add_test(cases, planted_bias_is_named);
     tcase_add_test(cases, worst_tile_is_the_worst);
     tcase_add_test(cases, scaled_data_give_the_same);

@@ -54,5 +54,6 @@ Suite *lc_suite_family(void);
 Suite *lc_suite_lecture(void);
 Suite *lc_suite_convergence(void);
 Suite *lc_suite_diagnose(void);
+Suite *lc_suite_pictures(void);
 
 #endif
