@@ -204,7 +204,7 @@ static lc_status judge_test(lc_grading *g, int i, lc_error *err)
     if (g->jail) {
         out->cpu_seconds = cpu - lc_jail_cpu_left(g->jail);
         g->cpu_left -= out->cpu_seconds;
-        if (lc_jail_said(g->jail)[0])
+        if (lc_jail_said(g->jail)[0] && lc_test_is_open(out)) /* a file could print what it saw of a hidden scene */
             snprintf(g->result->said, sizeof g->result->said, "%s", lc_jail_said(g->jail));
         snprintf(g->result->jail, sizeof g->result->jail, "%s", lc_jail_level(g->jail));
     }
@@ -286,6 +286,21 @@ static void set_late(lc_grading *g)
     r->late_penalty = fmin(a->late_most, a->late_per_day * r->late_days) * lc_assignment_points(a);
 }
 
+static void set_labels(lc_grading *g)
+{
+    static const char *const ids[LC_LABELS] = {"label_hint",    "label_pictures", "label_again", "label_ungradable",
+                                               "label_printed", "label_fault",    "label_score", "label_late"};
+    lc_grade_result *r = g->result;
+    lc_words words = {.count = 0};
+    lc_words_set(&words, "score", "%.4g", r->score);
+    lc_words_set(&words, "points", "%.4g", r->most_points);
+    lc_words_set(&words, "earned", "%.4g", r->points);
+    lc_words_set(&words, "penalty", "%.4g", r->late_penalty);
+    lc_words_set(&words, "days", "%.0f", r->late_days);
+    for (int i = 0; i < LC_LABELS; ++i)
+        lc_say(r->labels[i], sizeof r->labels[i], g->sentences, ids[i], &words);
+}
+
 static lc_status start_result(lc_grading *g, lc_error *err)
 {
     const lc_assignment *a = g->assignment;
@@ -312,6 +327,7 @@ static lc_status start_result(lc_grading *g, lc_error *err)
     if (r->test_count == 0)
         return lc_fail(err, LC_BAD_INPUT, "%s: there is no test '%s'", a->path, o->only);
     set_late(g);
+    set_labels(g);
     return LC_OK;
 }
 
@@ -443,6 +459,7 @@ static lc_status judge_all(lc_grading *g, lc_error *err)
             status = judge_test(g, i, err);
         ++r->done;
         add_up(r);
+        set_labels(g);
         if (status == LC_OK)
             status = tell(g, err);
     }
@@ -480,6 +497,7 @@ lc_status lc_grade_file(lc_grade_result *out, const lc_assignment *assignment, c
     if (status == LC_OK) {
         add_up(out);
         out->seconds = now() - start;
+        set_labels(g);
         status = tell(g, err);
     }
     lc_grading_release(g);

@@ -43,7 +43,10 @@ double lc_grade_share(double *margin_shown, const lc_row *row)
 static void set_percent(lc_words *words, const char *name, double ratio)
 {
     double percent = 100 * ratio;
-    lc_words_set(words, name, fabs(percent) < 1000 ? "%.4g%%" : "%.3g%%", percent);
+    if (!isfinite(percent))
+        lc_words_set(words, name, "%s", percent < 0 ? "-infinity" : percent > 0 ? "infinity" : "?");
+    else
+        lc_words_set(words, name, fabs(percent) < 1000 ? "%.4g%%" : "%.3g%%", percent);
 }
 
 static void set_words(lc_words *words, const lc_test_result *out, const lc_row *row, const lc_claim *claim)

@@ -20,11 +20,11 @@ static void print_test(FILE *out, const lc_grade_result *r, int i, int teacher)
         return;
     fprintf(out, "                     %s\n", teacher ? t->sentence : t->shown);
     if (t->hint[0])
-        fprintf(out, "                     hint: %s\n", t->hint);
+        fprintf(out, "                     %s: %s\n", r->labels[LC_LABEL_HINT], t->hint);
     if (open && t->pictures[0][0] && !is_right)
-        fprintf(out, "                     pictures: %s, %s, %s\n", t->pictures[0], t->pictures[1], t->pictures[2]);
+        fprintf(out, "                     %s: %s, %s, %s\n", r->labels[LC_LABEL_PICTURES], t->pictures[0], t->pictures[1], t->pictures[2]);
     if (open && t->reproduce[0] && !is_right)
-        fprintf(out, "                     again: %s\n", t->reproduce);
+        fprintf(out, "                     %s: %s\n", r->labels[LC_LABEL_AGAIN], t->reproduce);
     if (!open && !is_right)
         fprintf(out, "                     %s\n", t->withheld);
 }
@@ -34,7 +34,7 @@ void lc_grade_text(FILE *out, const lc_grade_result *r, int teacher)
     fprintf(out, "%s: %s\n%s%s%s, seed %llu, attempt %d, jail: %s\n", r->assignment, r->title, r->file,
             r->student[0] ? ", " : "", r->student, (unsigned long long)r->seed, r->attempt, r->jail);
     if (r->is_ungradable) {
-        fprintf(out, "\nungradable, which costs no attempt: %s\n%s", r->message, r->warnings);
+        fprintf(out, "\n%s: %s\n%s", r->labels[LC_LABEL_UNGRADABLE], r->message, r->warnings);
         return;
     }
     fprintf(out, "\n");
@@ -43,14 +43,13 @@ void lc_grade_text(FILE *out, const lc_grade_result *r, int teacher)
     if (r->message[0])
         fprintf(out, "\n%s\n", r->message);
     if (r->said[0])
-        fprintf(out, "\nyour file printed, which counts for nothing:\n%s\n", r->said);
+        fprintf(out, "\n%s:\n%s\n", r->labels[LC_LABEL_PRINTED], r->said);
     if (r->is_fault) {
-        fprintf(out, "\nno score: the grader is at fault, not your file. Grade again.\n");
+        fprintf(out, "\n%s\n", r->labels[LC_LABEL_FAULT]);
         return;
     }
-    fprintf(out, "\nscore %.4g of %.4g", r->score, r->most_points);
+    fprintf(out, "\n%s", r->labels[LC_LABEL_SCORE]);
     if (r->late_days > 0)
-        fprintf(out, " (%.4g, less %.4g for %.0f day%s late)", r->points, r->late_penalty, r->late_days,
-                r->late_days > 1 ? "s" : "");
+        fprintf(out, " (%s)", r->labels[LC_LABEL_LATE]);
     fprintf(out, ", in %.1f s\n", r->seconds);
 }

@@ -79,6 +79,19 @@ typedef struct lc_test_result {
 
 enum { LC_MOST_TESTS = 12 };
 
+/* What the text says besides the tests, from the table of sentences. */
+typedef enum lc_label {
+    LC_LABEL_HINT,
+    LC_LABEL_PICTURES,
+    LC_LABEL_AGAIN,
+    LC_LABEL_UNGRADABLE,
+    LC_LABEL_PRINTED,
+    LC_LABEL_FAULT,
+    LC_LABEL_SCORE,
+    LC_LABEL_LATE,
+    LC_LABELS
+} lc_label;
+
 typedef struct lc_grade_result {
     char assignment[64], title[128];
     char file[1024];          /* as given */
@@ -91,7 +104,7 @@ typedef struct lc_grade_result {
     lc_jail_code code;        /* AC: all passed; else of the first test that did not, CE when ungradable, IE for a fault */
     char message[1024];       /* of the compiler or the jail, where is_ungradable or is_fault */
     char warnings[2048];      /* what the compiler said */
-    char said[4097];          /* what the file's code printed, to be shown, never to be believed */
+    char said[4097];          /* what the file's code printed in a test that is open, to be shown, never to be believed */
     lc_test_result tests[LC_MOST_TESTS];
     int test_count;
     int done;                 /* how many are judged; equal to test_count at the end */
@@ -101,6 +114,7 @@ typedef struct lc_grade_result {
     double score;             /* max(0, points - late_penalty); 0 while ungradable or fault, and then it means nothing */
     int attempt;              /* counted from 1 */
     double seconds, cpu_seconds;
+    char labels[LC_LABELS][128];
 } lc_grade_result;
 
 /* 1 when the student may see scene, numbers, pictures and command line of this test now. */

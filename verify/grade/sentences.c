@@ -65,6 +65,15 @@ static const lc_sentence table[] = {
     /* hints */
     {"hint_category", "what is wrong has to do with {category}"},
     {"hint_name", "{hint}"},
+    /* the text besides: in the order of lc_label */
+    {"label_hint", "hint"},
+    {"label_pictures", "pictures"},
+    {"label_again", "again"},
+    {"label_ungradable", "ungradable, which costs no attempt"},
+    {"label_printed", "your file printed, which counts for nothing"},
+    {"label_fault", "no score: the grader is at fault, not your file. Grade again."},
+    {"label_score", "score {score} of {points}"},
+    {"label_late", "{earned}, less {penalty}: days late: {days}"},
 };
 enum { COUNT = sizeof table / sizeof table[0] };
 

@@ -161,6 +161,12 @@ START_TEST(test_grade_method)
 }
 END_TEST
 
+static lc_rgb no_light(const lc_scene *scene, const lc_ray *ray, const lc_hit *hit, const lc_options *o, lc_sampler *sampler)
+{
+    (void)scene, (void)ray, (void)hit, (void)o, (void)sampler;
+    return lc_black();
+}
+
 /* ---- what a student must not see yet --------------------------------------------------------------------------------------------- */
 
 START_TEST(test_grade_withheld)
@@ -195,6 +201,32 @@ START_TEST(test_grade_withheld)
     o.is_teacher = 1;
     grade(&r, "mine.c", &o);
     ck_assert_int_eq(lc_test_is_open(&r.tests[3]), 1);
+}
+END_TEST
+
+/* A table beside the assignment, for the tests and for what is said besides. */
+START_TEST(test_grade_translated)
+{
+    char path[] = "/tmp/lightcheck-test-XXXXXX", *text = NULL;
+    size_t size;
+    int fd = mkstemp(path);
+    ck_assert_int_ge(fd, 0);
+    ck_assert_int_gt(dprintf(fd, "{\"black\": \"{scene}: es bleibt dunkel\", \"label_score\": \"{score} von {points} Punkten\"}"), 0);
+    close(fd);
+    assign(HEAD "\"tests\": [" FIRST LAMP "]}");
+    snprintf(a.sentences, sizeof a.sentences, "%s", strrchr(path, '/') + 1);
+    lc_grade_options o = options();
+    lc_estimator black = *lc_right_estimator("three_point");
+    black.radiance = no_light;
+    o.estimator = &black;
+    grade(&r, "mine.c", &o);
+    unlink(path);
+    ck_assert_str_eq(r.tests[2].sentence, "random_rectangle: es bleibt dunkel");
+    FILE *out = open_memstream(&text, &size);
+    lc_grade_text(out, &r, 0);
+    fclose(out);
+    ck_assert_msg(strstr(text, "2 von 7 Punkten, in") && !strstr(text, "score"), "%s", text);
+    free(text);
 }
 END_TEST
 
@@ -371,6 +403,7 @@ Suite *lc_suite_grade(void)
     tcase_add_test(points, test_grade_by_seed);
     tcase_add_test(points, test_grade_method);
     tcase_add_test(seen, test_grade_withheld);
+    tcase_add_test(seen, test_grade_translated);
     tcase_add_test(seen, test_grade_late);
     tcase_add_test(seen, test_grade_after_every_test);
     tcase_add_test(seen, test_grade_pictures);
