@@ -16,7 +16,7 @@ NEEDS += check.h=check
 CHECK_LIBS = $(shell $(PKGCONF) --libs check 2>/dev/null || echo -lcheck -lsubunit -lrt)
 endif
 
-ifneq ($(filter-out clean help lint fresh,$(or $(MAKECMDGOALS),all)),)
+ifneq ($(filter-out clean help lint fresh gradescope-zip gradescope-check,$(or $(MAKECMDGOALS),all)),)
 SETUP := or run ./setup.sh, which installs all that lightcheck needs
 ifeq ($(shell command -v $(firstword $(CC)) 2>/dev/null),)
 $(error missing compiler $(firstword $(CC)): install gcc, $(SETUP))
@@ -63,7 +63,8 @@ WORKER := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard src/core/*.c verify/grade/w
 PROOF := $(patsubst %.c,$(BUILD)/obj/%.o,$(filter-out %/calibrate.c %/power.c %/kill.c,$(wildcard verify/proof/*.c)))
 
 .PHONY: all check verify verify-table full-table specular-proof pictures povray-reference mitsuba-table renderer-study lint asan-check \
-        calibrate power seeds few-seeds proof judge-mutants mutants diagnosis-proof bench needs fresh clean help
+        calibrate power seeds few-seeds proof judge-mutants mutants diagnosis-proof gradings bench student-kit gradescope-zip \
+        gradescope-check class needs fresh clean help
 all: $(BUILD)/lightcheck $(BUILD)/lightcheck-worker $(BUILD)/obj/estimators/template.o ## build the program
 
 # A plug-in finds the functions of lightcheck.h in the program, and no others.
@@ -139,6 +140,22 @@ check: all $(BUILD)/tests ## run the unit and command-line tests, and the exampl
 	LIGHTCHECK=$(BUILD)/lightcheck $(BUILD)/tests
 	@sh verify/tests/docs_selftest.sh $(BUILD)/lightcheck
 	@sh verify/tests/docs.sh $(BUILD)/lightcheck
+	@sh verify/tests/kit.sh $(BUILD)/lightcheck
+
+student-kit: all ## what a course gives to its students, without any solution: build/lightcheck-student.tar.gz (ASSIGNMENTS='FILE.json ...': these only)
+	rm -rf $(BUILD)/lightcheck-student
+	sh verify/grade/kit/make_kit.sh $(BUILD)/lightcheck $(BUILD)/lightcheck-student $(ASSIGNMENTS)
+	tar -C $(BUILD) -czf $(BUILD)/lightcheck-student.tar.gz lightcheck-student
+
+gradescope-zip: ## an autograder for Gradescope: build/gradescope-NAME.zip (ASSIGNMENT=NAME or FILE.json)
+	@test -n "$(ASSIGNMENT)" || { echo 'make gradescope-zip ASSIGNMENT=NAME: see `lightcheck list assignments`' >&2; exit 2; }
+	sh verify/grade/gradescope/make_zip.sh $(ASSIGNMENT) $(BUILD)/gradescope-$(basename $(notdir $(ASSIGNMENT))).zip
+
+gradescope-check: ## such an autograder in a new minimal Debian laid out as Gradescope's image (root, debootstrap)
+	@sh verify/tests/gradescope.sh
+
+class: all ## grade a class of 60 hand-ins that hang, crash or do not compile, and kill the grader: results/class.md
+	sh verify/tests/class.sh $(BUILD)/lightcheck 60 light_direct results/class.md
 
 povray-reference: all ## render the references of the povray check anew (needs POV-Ray, takes minutes)
 	$(BUILD)/lightcheck reference
@@ -187,6 +204,10 @@ mutants: $(BUILD)/kill ## which checks kill which mutants, and that right varian
 diagnosis-proof: all ## wrong files that diagnose has never seen: results/diagnosis.md
 	@bash verify/tests/diagnosis.sh $(BUILD)/lightcheck $(BUILD)/held_out > $(BUILD)/diagnosis.md; status=$$?; \
 	    cp $(BUILD)/diagnosis.md results/diagnosis.md; exit $$status
+
+gradings: all ## right solutions of every assignment, graded 200 times: results/gradings.md (N=count; goes on where it ended)
+	@sh verify/tests/gradings.sh $(BUILD)/lightcheck $(BUILD)/gradings.log $(or $(N),200) > $(BUILD)/gradings.md; status=$$?; \
+	    cp $(BUILD)/gradings.md results/gradings.md; exit $$status
 
 needs: ## say what is missing, if anything is
 	@:

@@ -8,7 +8,8 @@
 #include "cli/args.h"
 
 extern const lc_command lc_command_list, lc_command_render, lc_command_sample, lc_command_compare, lc_command_merge,
-    lc_command_verify, lc_command_diagnose, lc_command_export, lc_command_reference, lc_command_new;
+    lc_command_verify, lc_command_diagnose, lc_command_export, lc_command_reference, lc_command_new,
+    lc_command_grade, lc_command_assignment;
 
 /* Seed where none is given: fixed, so that two people see the same bits. */
 enum { LC_DEFAULT_SEED = 1, LC_DEFAULT_BOUNCES = 5 };
@@ -24,6 +25,8 @@ lc_status lc_cli_read_pair(int *a, int *b, const char *text, char separator, con
 lc_status lc_cli_bounces(int *out, int asked, const lc_scene *scene, const lc_estimator *estimator, lc_error *err);
 /* A progress bar on stderr, when that is a terminal; pass as lc_render_options.progress. */
 void lc_cli_progress(void *user, double done);
+/* --seed: a whole number, or `random`. */
+lc_status lc_cli_read_seed(uint64_t *seed, const char *text, lc_error *err);
 int lc_cli_has_terminal(void);
 
 #endif

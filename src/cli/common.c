@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -119,6 +120,25 @@ lc_status lc_cli_bounces(int *out, int asked, const lc_scene *scene, const lc_es
     int given = lc_scene_description(scene)->max_bounces;
     int bounces = asked >= 0 ? asked : given >= 0 ? given : LC_DEFAULT_BOUNCES;
     *out = bounces < estimator->max_bounces ? bounces : estimator->max_bounces;
+    return LC_OK;
+}
+
+lc_status lc_cli_read_seed(uint64_t *seed, const char *text, lc_error *err)
+{
+    char *end;
+    if (strcmp(text, "random") == 0) {
+        FILE *f = fopen("/dev/urandom", "rb");
+        size_t read = f ? fread(seed, sizeof *seed, 1, f) : 0;
+        if (f)
+            fclose(f);
+        return read == 1 ? LC_OK : lc_fail(err, LC_FAULT, "/dev/urandom: cannot draw a seed");
+    }
+    errno = 0;
+    unsigned long long number = strtoull(text, &end, 10);
+    if (end == text || *end || errno || text[0] == '-')
+        return lc_fail(err, LC_BAD_INPUT, "--seed: '%s' is neither `random` nor a whole number from 0 to 2^64 - 1",
+                       text);
+    *seed = number;
     return LC_OK;
 }
 

@@ -8,9 +8,10 @@
 #include "estimators/registry.h"
 #include "io/scene_path.h"
 #include "verify/checks/checks.h"
+#include "verify/grade/assignment.h"
 #include "verify/mutants/registry.h"
 
-#define EXPECTED "expected one of: estimators, scenes, checks, mutants, variants"
+#define EXPECTED "expected one of: estimators, scenes, checks, mutants, variants, assignments"
 
 /* One item of a list; summary and source may be NULL. */
 typedef void item_fn(json_t *array, const char *name, const char *summary, const char *source);
@@ -74,6 +75,17 @@ static lc_status list_scenes(item_fn *item, json_t *array, lc_error *err)
     return LC_OK;
 }
 
+typedef struct item_user {
+    item_fn *item;
+    json_t *array;
+} item_user;
+
+static void list_assignment(void *user, const char *name, const char *title)
+{
+    item_user *u = user;
+    u->item(u->array, name, title, NULL);
+}
+
 static lc_status list(void *user, const lc_strings *rest, lc_error *err)
 {
     int json = *(int *)user;
@@ -91,6 +103,8 @@ static lc_status list(void *user, const lc_strings *rest, lc_error *err)
         list_variants(item, array);
     else if (strcmp(what, "scenes") == 0)
         status = list_scenes(item, array, err);
+    else if (strcmp(what, "assignments") == 0)
+        status = lc_assignment_list(list_assignment, &(item_user){item, array}, err);
     else
         status = lc_fail(err, LC_BAD_INPUT, EXPECTED);
     if (json && status == LC_OK) {
@@ -110,5 +124,5 @@ static int run(const lc_command *self, int argc, char **argv)
 }
 
 const lc_command lc_command_list = {
-    "list", "estimators|scenes|checks|mutants|variants [--json]", "what there is: one item a line, the name first", NULL, run,
+    "list", "estimators|scenes|checks|mutants|variants|assignments [--json]", "what there is: one item a line, the name first", NULL, run,
 };

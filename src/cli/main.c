@@ -13,7 +13,7 @@
 static const lc_command *const commands[] = {
     &lc_command_list,  &lc_command_render, &lc_command_sample, &lc_command_compare,
     &lc_command_merge, &lc_command_verify, &lc_command_export, &lc_command_reference, &lc_command_diagnose,
-    &lc_command_new,
+    &lc_command_new,   &lc_command_grade,  &lc_command_assignment,
 };
 enum { COUNT = sizeof commands / sizeof commands[0] };
 

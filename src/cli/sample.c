@@ -7,12 +7,14 @@
 #include <unistd.h>
 
 #include "cli/commands.h"
+#include "verify/checks/family.h"
 #include "verify/grade/plugin.h"
+#include "verify/judge/judge.h"
 
 typedef struct sample_arguments {
     const char *estimator, *pixel, *size;
     int bounces, gdb;
-    uint64_t index, seed;
+    uint64_t index, seed, arm;
     lc_strings definitions;
     int argc; /* as given, for --gdb */
     char **argv;
@@ -100,7 +102,8 @@ static lc_status replay(void *user, const lc_strings *rest, lc_error *err)
     if (status == LC_OK)
         status = lc_cli_read_pair(&x, &y, a->pixel, ',', "--pixel", err);
     if (status == LC_OK)
-        status = lc_cli_load_scene(&scene, scene_name, &a->definitions, err);
+        status = lc_family_find(scene_name) ? lc_suite_scene(&scene, scene_name, a->seed, NULL, err)
+                                            : lc_cli_load_scene(&scene, scene_name, &a->definitions, err);
     if (status != LC_OK)
         return status;
     width = lc_scene_description(scene)->width;
@@ -115,7 +118,7 @@ static lc_status replay(void *user, const lc_strings *rest, lc_error *err)
         status = lc_fail(err, LC_BAD_INPUT, "--index %llu: expected less than 2^32 - 1", (unsigned long long)a->index);
     if (status == LC_OK) {
         lc_trace_log log = {print_line, NULL};
-        options.arm = lc_arm(estimator->name);
+        options.arm = a->arm <= UINT32_MAX ? (uint32_t)a->arm : lc_arm(estimator->name);
         printf("sample %llu of pixel %d,%d of %s (%dx%d), %s, bounces 0 to %d, seed %llu\n",
                (unsigned long long)a->index, x, y, lc_scene_description(scene)->name, width, height, estimator->name,
                options.max_bounces, (unsigned long long)a->seed);
@@ -128,13 +131,14 @@ static lc_status replay(void *user, const lc_strings *rest, lc_error *err)
 
 static int run(const lc_command *self, int argc, char **argv)
 {
-    sample_arguments a = {.bounces = -1, .seed = LC_DEFAULT_SEED, .argc = argc, .argv = argv};
+    sample_arguments a = {.bounces = -1, .seed = LC_DEFAULT_SEED, .arm = UINT64_MAX, .argc = argc, .argv = argv};
     const lc_option options[] = {
         {'e', "estimator", LC_OPT_STRING, &a.estimator, "NAME|FILE.c",
          "estimator (see `lightcheck list estimators`), or a file of your own", 0, 0, NULL},
         {0, "pixel", LC_OPT_STRING, &a.pixel, "X,Y", "counted from 0,0, the upper left", 0, 0, NULL},
         {0, "index", LC_OPT_UINT64, &a.index, "K", "which sample of the pixel; default 0", 0, 0, NULL},
         {0, "seed", LC_OPT_UINT64, &a.seed, "N", "default 1", 0, 0, NULL},
+        {0, "arm", LC_OPT_UINT64, &a.arm, "N", "stream, as `grade` names it; default: the estimator's in a render", 0, 0, NULL},
         {0, "bounces", LC_OPT_INT, &a.bounces, "N", "as for render", 0, LC_UNBOUNDED, NULL},
         {0, "size", LC_OPT_STRING, &a.size, "WxH", "as for render", 0, 0, NULL},
         {'D', "define", LC_OPT_LIST, &a.definitions, "NAME=VALUE", "value of a <default> of the scene", 0, 0, NULL},

@@ -59,25 +59,6 @@ static void open_album(album *pictures, lc_verify_options *options, const char *
             lc_fail(&pictures->err, LC_FAULT, "%s: cannot make the folder: %s", folder, strerror(errno));
 }
 
-static lc_status read_seed(uint64_t *seed, const char *text, lc_error *err)
-{
-    char *end;
-    if (strcmp(text, "random") == 0) {
-        FILE *f = fopen("/dev/urandom", "rb");
-        size_t read = f ? fread(seed, sizeof *seed, 1, f) : 0;
-        if (f)
-            fclose(f);
-        return read == 1 ? LC_OK : lc_fail(err, LC_FAULT, "/dev/urandom: cannot draw a seed");
-    }
-    errno = 0;
-    unsigned long long number = strtoull(text, &end, 10);
-    if (end == text || *end || errno || text[0] == '-')
-        return lc_fail(err, LC_BAD_INPUT, "--seed: '%s' is neither `random` nor a whole number from 0 to 2^64 - 1",
-                       text);
-    *seed = number;
-    return LC_OK;
-}
-
 static lc_status check_names(const verify_arguments *a, lc_error *err)
 {
     int known = !a->check;
@@ -209,7 +190,7 @@ static lc_status verify(void *user, const lc_strings *rest, lc_error *err)
     options.on_row = show_row;
     lc_status status = check_names(a, err);
     if (status == LC_OK)
-        status = read_seed(&options.seed, a->seed, err);
+        status = lc_cli_read_seed(&options.seed, a->seed, err);
     if (status == LC_OK && a->shard)
         status = lc_cli_read_pair(&options.shard, &options.shards, a->shard, '/', "--shard", err);
     if (status == LC_OK && a->shard && options.shard >= options.shards)

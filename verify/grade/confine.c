@@ -20,15 +20,19 @@
 
 /* ---- limits ------------------------------------------------------------------------------------------------------ */
 
-static int limit(int what, uint64_t value)
+static int limit_twice(int what, uint64_t soft, uint64_t hard)
 {
-    struct rlimit now, wanted = {(rlim_t)value, (rlim_t)value};
+    struct rlimit now, wanted = {(rlim_t)soft, (rlim_t)hard};
     if (getrlimit((__rlimit_resource_t)what, &now) != 0)
         return 0;
     if (now.rlim_max != RLIM_INFINITY && wanted.rlim_max > now.rlim_max) /* a stricter one stands already */
-        wanted.rlim_cur = wanted.rlim_max = now.rlim_max;
+        wanted.rlim_max = now.rlim_max;
+    if (wanted.rlim_cur > wanted.rlim_max)
+        wanted.rlim_cur = wanted.rlim_max;
     return setrlimit((__rlimit_resource_t)what, &wanted) == 0;
 }
+
+static int limit(int what, uint64_t value) { return limit_twice(what, value, value); }
 
 /* Address space in use [bytes]. */
 static uint64_t used_memory(void)
@@ -44,7 +48,8 @@ static uint64_t used_memory(void)
 
 static int set_limits(const lc_confinement *c, uint64_t processes, uint64_t descriptors)
 {
-    int ok = limit(RLIMIT_CPU, (uint64_t)ceil(c->cpu_seconds)); /* hard at once: SIGXCPU could be caught */
+    uint64_t seconds = (uint64_t)ceil(c->cpu_seconds);
+    int ok = limit_twice(RLIMIT_CPU, seconds, seconds + 1); /* SIGXCPU, by which it is known; who catches that is killed */
 #ifndef __SANITIZE_ADDRESS__ /* whose shadow has the size of the address space */
     ok &= limit(RLIMIT_AS, used_memory() + c->memory);
 #endif

@@ -348,7 +348,7 @@ static void judge_end(crew *c, const worker *w, int status, const struct rusage 
     if (!w->greeted) {
         judge(c, LC_JAIL_IE, "a worker did not begin: %s %d", number ? "signal" : "exit status",
               number ? number : WEXITSTATUS(status));
-    } else if (number == SIGXCPU || (number && cpu >= 0.95 * ceil(limits->cpu_seconds))) { /* clocks differ by ticks */
+    } else if (number == SIGXCPU || (number && cpu >= 0.9 * ceil(limits->cpu_seconds))) { /* clocks differ, by up to 6% as seen */
         judge(c, LC_JAIL_TLE, "it was stopped after %.3g s of computing", cpu);
     } else if (number && number != SIGSYS && (double)use->ru_maxrss * 1024 >= 0.75 * (double)limits->memory) {
         judge(c, LC_JAIL_MLE, "it died with its memory full: %llu MiB are allowed",

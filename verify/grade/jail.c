@@ -189,3 +189,4 @@ const lc_jail_verdict *lc_jail_last(const lc_jail *jail) { return &jail->last.ve
 const char *lc_jail_said(const lc_jail *jail) { return jail->last.said; }
 const char *lc_jail_messages(const lc_jail *jail) { return jail->messages; }
 void lc_jail_set_cpu(lc_jail *jail, double cpu_seconds) { jail->cpu_left = cpu_seconds; }
+double lc_jail_cpu_left(const lc_jail *jail) { return jail->cpu_left; }

@@ -76,6 +76,7 @@ const char *lc_jail_said(const lc_jail *jail);
 const char *lc_jail_messages(const lc_jail *jail);
 /* The CPU time that is left [s]; another test may get its own. */
 void lc_jail_set_cpu(lc_jail *jail, double cpu_seconds);
+double lc_jail_cpu_left(const lc_jail *jail);
 
 /* The parts that held in all workers so far, and the same in words: "limits, seccomp, Landlock, another user". */
 unsigned lc_jail_parts(const lc_jail *jail);

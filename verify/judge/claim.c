@@ -146,6 +146,11 @@ static void compare_exactly(lc_row *row, const lc_film *film, const lc_film *oth
                 continue;
             row->verdict = LC_ROW_FAIL;
             row->channel = c;
+            row->expected = should;
+            row->ratio = row->tile_ratio = is / should;
+            row->tile_x = (int)(i % (size_t)film->width);
+            row->tile_y = (int)(i / (size_t)film->width);
+            row->tile_width = row->tile_height = 1;
             snprintf(row->reason, sizeof row->reason,
                      "%s on %s is wrong: pixel %d,%d has %s = %.9g, expected exactly %.9g (%+.3g%%)", row->estimator,
                      row->scene, (int)(i % (size_t)film->width), (int)(i / (size_t)film->width), channel_names[c], is,
@@ -317,6 +322,7 @@ static int dependent_channel(lc_batches *out, const lc_film *film, double alpha)
 static void describe_dependence(lc_row *row, const lc_batches *b, int channel)
 {
     row->verdict = LC_ROW_FAIL;
+    row->dependent = 1;
     snprintf(row->reason, sizeof row->reason,
              "%s on %s: its samples depend on each other: means of %d samples vary %.3g times as much as those of "
              "independent ones (%s, p = 1e%.0f): a generator is shared or seeded again",

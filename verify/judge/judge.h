@@ -78,6 +78,29 @@ lc_status lc_measure_cells(lc_load_scene_fn *load, const lc_estimator *estimator
 /* c of a film: standard deviation of a sample over the mean, both pooled over the image, in the channel where it is largest. */
 double lc_film_noise(const lc_film *film);
 
+/* ---- one claim at a time: what a grader needs ---------------------------------------------------------------------- */
+
+typedef struct lc_session lc_session;
+
+/* The budget of the options is split among `rows` claims. The options outlive the session. LC_FAULT without memory. */
+lc_status lc_session_open(lc_session **out, const lc_verify_options *options, int rows, lc_error *err);
+void lc_session_close(lc_session *session); /* NULL is fine */
+/* Fills a zeroed row, as lc_verify does. An estimator that gives no film fails its row. */
+lc_status lc_session_judge(lc_row *row, lc_session *session, const lc_claim *claim, lc_error *err);
+
+/* What a claim was judged by last; NULL: none of that. They are the session's. */
+typedef struct lc_seen {
+    const lc_film *film;          /* of the estimator */
+    const lc_film *other;         /* of the one that it was compared with */
+    const lc_film *difference;    /* of a relation: each sample less those of the terms */
+    const lc_expected *expected;
+    const lc_film *bad;           /* a film of the estimator that has bad samples, pilots included */
+} lc_seen;
+void lc_session_seen(lc_seen *out, const lc_session *session, const lc_claim *claim);
+
+/* The stream of an estimator in this run. One that is not in the registry never shares a stream with one that is, even under the same name. */
+uint32_t lc_session_arm(const lc_estimator *estimator);
+
 /* ---- two images ------------------------------------------------------------------------------------------------ */
 
 /* Decides whether two films of different streams have the same mean, within a relative margin of the second's mean. */

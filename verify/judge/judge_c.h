@@ -26,7 +26,7 @@ typedef struct lc_stock_values {
     lc_expected expected;
 } lc_stock_values;
 
-typedef struct lc_session {
+struct lc_session {
     const lc_verify_options *options;
     lc_stock_film *films;
     lc_stock_values *values;
@@ -35,7 +35,7 @@ typedef struct lc_session {
     double margin;
     uint64_t paths;
     struct lc_foreign *foreign; /* what is known of the renderer under test on this scene; NULL: nothing yet */
-} lc_session;
+};
 
 /* The film of that stream with exactly `samples` a pixel. The film is the session's. */
 lc_status lc_session_film(const lc_film **out, lc_session *session, const lc_scene *scene,
@@ -59,9 +59,6 @@ lc_status lc_plan_host(lc_claims *claims, lc_error *err);
 
 /* 1 for the estimators that the program ships. */
 int lc_is_registered(const lc_estimator *estimator);
-
-/* The stream of an estimator in this run. One that is not in the registry never shares a stream with one that is, even under the same name. */
-uint32_t lc_session_arm(const lc_estimator *estimator);
 
 /* Judges the claims, scenes at the same time, and appends their rows to the report in this order; each thread has a session of its own,
  * that begins as `model`, which has no films yet. */

@@ -113,16 +113,22 @@ static void release_expected(lc_expected *expected)
     free(expected->skip);
 }
 
-lc_status lc_session_values(const lc_expected **out, lc_session *session, const lc_claim *claim, lc_error *err)
+static const lc_expected *known_values(const lc_session *session, const lc_claim *claim)
 {
     for (int i = 0; i < session->value_count; ++i) {
         const lc_stock_values *known = &session->values[i];
-        if (known->scene == claim->scene && known->expect == claim->expect &&
-            known->min_bounces == claim->min_bounces && known->max_bounces == claim->max_bounces) {
-            *out = &session->values[i].expected;
-            return LC_OK;
-        }
+        if (known->scene == claim->scene && known->expect == claim->expect && known->min_bounces == claim->min_bounces &&
+            known->max_bounces == claim->max_bounces)
+            return &known->expected;
     }
+    return NULL;
+}
+
+lc_status lc_session_values(const lc_expected **out, lc_session *session, const lc_claim *claim, lc_error *err)
+{
+    *out = known_values(session, claim);
+    if (*out)
+        return LC_OK;
     const lc_scene_desc *desc = lc_scene_description(claim->scene);
     size_t pixels = (size_t)desc->width * (size_t)desc->height;
     lc_stock_values *values = realloc(session->values, ((size_t)session->value_count + 1) * sizeof *values);
@@ -156,6 +162,48 @@ void lc_session_clear(lc_session *session)
     session->films = NULL;
     session->values = NULL;
     session->film_count = session->value_count = 0;
+}
+
+/* ---- one claim at a time ------------------------------------------------------------------------------------------- */
+
+lc_status lc_session_open(lc_session **out, const lc_verify_options *options, int rows, lc_error *err)
+{
+    *out = calloc(1, sizeof **out);
+    if (!*out)
+        return lc_fail(err, LC_FAULT, "out of memory for a session");
+    (*out)->options = options;
+    (*out)->rows = rows;
+    (*out)->margin = options->margin > 0 ? options->margin : options->suite->margin;
+    return LC_OK;
+}
+
+void lc_session_close(lc_session *session)
+{
+    if (session)
+        lc_session_clear(session);
+    free(session);
+}
+
+lc_status lc_session_judge(lc_row *row, lc_session *session, const lc_claim *claim, lc_error *err)
+{
+    return lc_judge_claim(row, session, claim, err);
+}
+
+void lc_session_seen(lc_seen *out, const lc_session *session, const lc_claim *claim)
+{
+    uint32_t arm = lc_session_arm(claim->estimator);
+    lc_stock_film key = {claim->scene, claim->estimator, claim->min_bounces, claim->max_bounces, arm, NULL, NULL};
+    memset(out, 0, sizeof *out);
+    out->film = longest_film(session, &key, UINT64_MAX);
+    key.minus = claim;
+    out->difference = longest_film(session, &key, UINT64_MAX);
+    key = (lc_stock_film){claim->scene, claim->other, claim->min_bounces, claim->max_bounces, 0, NULL, NULL};
+    key.arm = claim->other ? lc_session_arm(claim->other) : 0;
+    out->other = claim->other ? longest_film(session, &key, UINT64_MAX) : NULL;
+    out->expected = known_values(session, claim);
+    for (int i = 0; i < session->film_count; ++i)
+        if (session->films[i].estimator == claim->estimator && session->films[i].film->bad)
+            out->bad = session->films[i].film;
 }
 
 void lc_session_forget(lc_session *session, const lc_estimator *estimator)

@@ -156,10 +156,62 @@ static lc_rgb walk(direct_fn *direct, unsigned how, const lc_scene *scene, const
     }
 }
 
+/* One of the lobes, all equally likely; light is reflected or refracted by the toss of a coin. Returns what the path is multiplied by. */
+static lc_rgb toss(const lc_scene *scene, const lc_hit *hit, lc_sampler *sampler, lc_vec3 *wi)
+{
+    lc_material m = lc_material_at(scene, hit);
+    int lobes[3], count = 0;
+    if (lc_rgb_max(m.diffuse) > 0)
+        lobes[count++] = LC_DIFFUSE;
+    if (lc_rgb_max(m.mirror) > 0)
+        lobes[count++] = LC_MIRROR;
+    if (m.glass > 0)
+        lobes[count++] = LC_GLASS;
+    if (count == 0)
+        return lc_black();
+    int lobe = lobes[(int)(lc_next(sampler) * count)];
+    lc_vec3 n = lc_facing(hit->n, hit->wo);
+    if (lobe == LC_DIFFUSE) {
+        double u = lc_next(sampler), v = lc_next(sampler);
+        *wi = lc_cosine_hemisphere(n, u, v);
+        return lc_rgb_scale(count * LC_PI, lc_bsdf_eval(scene, hit, *wi));
+    }
+    double f = lc_fresnel(fabs(lc_dot(hit->n, hit->wo)), m.ior), weight = 2 * count * m.glass;
+    *wi = lc_reflect(hit->wo, hit->n);
+    if (lobe == LC_MIRROR)
+        return lc_rgb_scale(count, m.mirror);
+    if (lc_next(sampler) < 0.5)
+        return lc_color(weight * f, weight * f, weight * f);
+    if (!lc_refract(hit->wo, hit->n, m.ior, wi))
+        return lc_black();
+    weight *= (1 - f) / (m.ior * m.ior);
+    return lc_color(weight, weight, weight);
+}
+
+static lc_rgb tossed(direct_fn *direct, unsigned how, const lc_scene *scene, const lc_hit *first, const lc_options *options,
+                     lc_sampler *sampler)
+{
+    lc_rgb total = lc_black(), throughput = lc_color(1, 1, 1);
+    lc_hit hit = *first;
+    (void)direct, (void)how;
+    for (int k = 0;; ++k) {
+        if (k >= options->min_bounces)
+            total = lc_rgb_add(total, lc_rgb_mul(throughput, lc_emission(scene, &hit)));
+        if (k == options->max_bounces || !hit.valid)
+            return total;
+        lc_vec3 wi;
+        throughput = lc_rgb_mul(throughput, toss(scene, &hit, sampler, &wi));
+        if (!(lc_rgb_max(throughput) > 0))
+            return total;
+        lc_trace(scene, &hit, wi, &hit);
+    }
+}
+
 #define LIGHT "light_direct", LC_DIFFUSE, LC_AREA | LC_POINT | LC_DIRECTIONAL, 1
 #define AREA "three_point", LC_DIFFUSE, LC_AREA, 1
 #define HEMISPHERE "hemisphere_direct", LC_DIFFUSE, LC_AREA | LC_SKY, 1
 #define PATH "path", LC_DIFFUSE, LC_AREA | LC_SKY, LC_UNBOUNDED
+#define GLASS "dielectric", LC_DIFFUSE | LC_MIRROR | LC_GLASS, LC_AREA | LC_SKY, LC_UNBOUNDED
 
 #define VARIANTS(X) \
     X(light_uneven_choice, sum, by_light, UNEVEN_CHOICE, LIGHT, "half of the samples go to the first light") \
@@ -180,7 +232,8 @@ static lc_rgb walk(direct_fn *direct, unsigned how, const lc_scene *scene, const
     X(path_absorbed, walk, by_light, COSINE | ANALOG, PATH, "survives with probability = albedo") \
     X(path_never_ends, walk, by_light, NEVER_ENDS, PATH, "roulette that never acts") \
     X(path_half_survive, walk, by_light, HALF, PATH, "survives with probability 1/2, whatever it carries") \
-    X(path_by_throughput, walk, by_light, BY_THROUGHPUT, PATH, "survives with probability = throughput")
+    X(path_by_throughput, walk, by_light, BY_THROUGHPUT, PATH, "survives with probability = throughput") \
+    X(specular_even, tossed, by_light, 0, GLASS, "all lobes equally likely, reflected or refracted by the toss of a coin")
 
 #define DEFINE(id, function, direct, how, language, summary) \
     static lc_rgb radiance_##id(const lc_scene *scene, const lc_ray *ray, const lc_hit *hit, \

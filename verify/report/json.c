@@ -2,12 +2,8 @@
  *
  * The report as JSON. JSON has no infinity and no NaN: such a number is null (jansson would drop the key without a word).
  */
-#include <jansson.h>
-#include <math.h>
-
 #include "verify/report/pictures.h"
-
-static json_t *number(double value) { return isfinite(value) ? json_real(value) : json_null(); }
+#include "verify/report/safe.h"
 
 /* The files of a row by what they show. */
 static json_t *pictures_json(const lc_row *row)
@@ -29,22 +25,22 @@ static json_t *row_json(const lc_row *row)
         return NULL;
     if (!row->exact) {
         json_object_set_new(o, "channel", json_string(row->channel == 0 ? "R" : row->channel == 1 ? "G" : "B"));
-        json_object_set_new(o, "ratio", number(row->ratio));
-        json_object_set_new(o, "interval", json_pack("[o, o]", number(row->low), number(row->high)));
-        json_object_set_new(o, "margin", number(row->margin));
-        json_object_set_new(o, "expected_mean", number(row->expected));
+        json_object_set_new(o, "ratio", lc_json_number(row->ratio));
+        json_object_set_new(o, "interval", json_pack("[o, o]", lc_json_number(row->low), lc_json_number(row->high)));
+        json_object_set_new(o, "margin", lc_json_number(row->margin));
+        json_object_set_new(o, "expected_mean", lc_json_number(row->expected));
     }
     if (row->verdict == LC_ROW_PASS && !row->exact)
-        json_object_set_new(o, "excluded_missed_contribution", number(row->missed));
+        json_object_set_new(o, "excluded_missed_contribution", lc_json_number(row->missed));
     if (row->verdict != LC_ROW_PASS)
-        json_object_set_new(o, "reason", json_string(row->reason));
+        json_object_set_new(o, "reason", lc_json_text(row->reason));
     if (row->pictures[0])
         json_object_set_new(o, "pictures", pictures_json(row));
-    if (row->tile_width)
+    if (row->tile_width && !row->exact)
         json_object_set_new(o, "worst_tile",
                             json_pack("{s:i, s:i, s:i, s:i, s:o, s:o}", "x", row->tile_x, "y", row->tile_y, "width",
-                                      row->tile_width, "height", row->tile_height, "ratio", number(row->tile_ratio),
-                                      "log10_p", number(row->tile_log10_p)));
+                                      row->tile_width, "height", row->tile_height, "ratio", lc_json_number(row->tile_ratio),
+                                      "log10_p", lc_json_number(row->tile_log10_p)));
     return o;
 }
 
@@ -79,7 +75,7 @@ lc_status lc_report_json(FILE *out, const lc_report *report, lc_error *err)
              (unsigned long long)report->seed); /* 64 bits do not fit a JSON number everywhere */
     json_t *o = json_pack("{s:s, s:s, s:s, s:s, s:o, s:o, s:i, s:I, s:o, s:o}", "program", "lightcheck", "version",
                           LC_VERSION, "suite", report->suite, "seed", seed, "false_fail_probability",
-                          number(report->false_fail), "false_pass_probability", number(report->false_pass),
+                          lc_json_number(report->false_fail), "false_pass_probability", lc_json_number(report->false_pass),
                           "not_applicable", report->not_applicable, "paths", (json_int_t)report->paths, "rows", rows, "no_row",
                           notes_json(report));
     if (!o)

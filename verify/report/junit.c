@@ -4,47 +4,26 @@
  * type "undecided": no CI system must take it for a pass.
  */
 #include "verify/report/report.h"
-
-static void print_escaped(FILE *out, const char *text)
-{
-    for (const unsigned char *c = (const unsigned char *)text; *c; ++c) {
-        switch (*c) {
-        case '&':
-            fputs("&amp;", out);
-            break;
-        case '<':
-            fputs("&lt;", out);
-            break;
-        case '>':
-            fputs("&gt;", out);
-            break;
-        case '"':
-            fputs("&quot;", out);
-            break;
-        default:
-            fputc(*c < 0x20 ? ' ' : *c, out); /* control characters are not XML */
-        }
-    }
-}
+#include "verify/report/safe.h"
 
 static void print_row(FILE *out, const lc_row *row)
 {
     fputs("    <testcase classname=\"lightcheck.", out);
-    print_escaped(out, row->check);
+    lc_xml_text(out, row->check);
     fputs("\" name=\"", out);
-    print_escaped(out, row->scene);
+    lc_xml_text(out, row->scene);
     fputc('/', out);
-    print_escaped(out, row->estimator);
+    lc_xml_text(out, row->estimator);
     if (row->verdict == LC_ROW_PASS) {
         fputs("\"/>\n", out);
         return;
     }
     fprintf(out, "\">\n      <failure type=\"%s\" message=\"", row->verdict == LC_ROW_FAIL ? "wrong" : "undecided");
-    print_escaped(out, row->reason);
+    lc_xml_text(out, row->reason);
     fputs("\">expected: ", out);
-    print_escaped(out, row->source);
+    lc_xml_text(out, row->source);
     fputs("; again: ", out);
-    print_escaped(out, row->reproduce);
+    lc_xml_text(out, row->reproduce);
     fputs("</failure>\n    </testcase>\n", out);
 }
 

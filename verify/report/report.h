@@ -20,6 +20,7 @@ typedef struct lc_row {
     lc_row_verdict verdict;
     int exact;        /* a deterministic claim: no statistics; ratio and interval mean nothing */
     int channel;      /* 0 1 2: the one that was hardest; the numbers below are its */
+    int dependent;    /* 1: FAIL, because its samples depend on each other: no interval can be believed */
     double ratio;     /* mean / expected mean */
     double low, high; /* the interval of the ratio at the error the row was given; may be infinite */
     double margin;    /* relative; the ratio was to be shown within 1 +- margin */

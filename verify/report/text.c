@@ -61,7 +61,7 @@ void lc_report_text_row(FILE *out, const lc_row *row)
 static void print_trouble(FILE *out, const lc_row *row)
 {
     fprintf(out, "    %s\n    expected: %s\n", row->reason, row->source);
-    if (row->tile_width)
+    if (row->tile_width && !row->exact)
         fprintf(out, "    worst tile: %dx%d pixels at %d,%d: %.4g times what is expected there, p = 1e%.0f\n",
                 row->tile_width, row->tile_height, row->tile_x, row->tile_y, row->tile_ratio, row->tile_log10_p);
     if (row->pictures[0])

@@ -5,7 +5,7 @@
 # docs/*.md unless named) as a reader would, with PROGRAM as build/lightcheck, in a folder of its own: each must exit
 # with 0, or with N where the line ends in `# exits N`. After the line `<!-- slow -->`, and for make and ./setup.sh, only
 # the names are looked up: the command's options in its --help, the target in `make help`, the argument in setup.sh
-# --help. Links to files of the project must lead somewhere.
+# --help. Links to files of the project must lead somewhere. A ```c block after the line `<!-- NAME.c -->` is that file.
 # Exit status 0: all true, 1: something is not.
 set -eu
 cd "$(dirname "$0")/../.."
@@ -27,6 +27,16 @@ wrong() {
     printf '%s: %s\n' "$where" "$1" >&2
     failed=$((failed + 1))
 }
+
+# The files that the documents have in them.
+for file; do
+    awk -v folder="$reader" '
+        inside && /^```/ { close(name); inside = 0; name = "" }
+        inside { print > name }
+        /^```c$/ && name { inside = 1 }
+        !inside && /[^ ]/ { name = match($0, /^<!-- [a-z0-9_]+\.c -->$/) ? folder "/" $2 : "" }
+    ' "$file"
+done
 
 # FILE:LINE, tab, `slow` or `run`, tab, exit status, tab, command.
 commands() {

@@ -25,6 +25,17 @@ make nothing-of-that-name       # wrong
 ```text
 build/lightcheck list nothing
 ```
+<!-- right.c -->
+```c
+int x;
+```
+```c
+int y;
+```
+```sh
+grep -q 'int x;' right.c
+grep -q 'int y;' right.c        # wrong
+```
 
 <!-- slow -->
 ```sh

@@ -15,7 +15,10 @@ static Suite *(*const suites[])(void) = {
     lc_suite_effects,  lc_suite_motion,         lc_suite_nee,           lc_suite_metamorphic,
     lc_suite_family,   lc_suite_convergence,    lc_suite_lecture,
     lc_suite_diagnose, lc_suite_scene_write,    lc_suite_adapter,
-    lc_suite_plugin,   lc_suite_jail,           lc_suite_pictures,
+    lc_suite_plugin,   lc_suite_jail,
+    lc_suite_similarity, lc_suite_roster, lc_suite_pool, lc_suite_handins,
+    lc_suite_formats,  lc_suite_class,          lc_suite_assignment,    lc_suite_grade,
+    lc_suite_rehearse, lc_suite_pictures,
 };
 
 int main(void)

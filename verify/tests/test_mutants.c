@@ -249,6 +249,7 @@ static const struct row variant_rows[] = {
     {"path_never_ends", "furnace", "furnace_checker"},
     {"path_half_survive", "furnace", "furnace_sphere"},
     {"path_by_throughput", "furnace", "furnace_checker"},
+    {"specular_even", "specular", "glass_blend"},
 };
 enum { VARIANT_ROWS = sizeof variant_rows / sizeof variant_rows[0] };
 

@@ -9,6 +9,8 @@
 #include <string.h>
 
 #include "verify/report/report.h"
+#include "verify/report/safe.h"
+#include "verify/tests/xml_help.h"
 
 static lc_row *add_row(lc_report *report, lc_row_verdict verdict)
 {
@@ -144,49 +146,6 @@ END_TEST
 
 /* ---- JUnit ------------------------------------------------------------------------------------------------------ */
 
-/* Tags nest, attributes are quoted, '&' starts one of five entities, and no control character occurs. Counts the tags
- * of that name. */
-static int count_tags(const char *xml, const char *name)
-{
-    const char *open[16];
-    size_t length[16];
-    int depth = 0, count = 0;
-    for (const char *c = xml; *c; ++c) {
-        ck_assert_msg((unsigned char)*c >= 0x20 || *c == '\n', "control character %d", *c);
-        if (*c == '&')
-            ck_assert_msg(strncmp(c, "&amp;", 5) == 0 || strncmp(c, "&lt;", 4) == 0 || strncmp(c, "&gt;", 4) == 0 ||
-                              strncmp(c, "&quot;", 6) == 0 || strncmp(c, "&apos;", 6) == 0,
-                          "a bare &: %.20s", c);
-        if (*c != '<')
-            continue;
-        const char *tag = c + 1;
-        int quoted = 0;
-        for (++c; *c && (*c != '>' || quoted); ++c) {
-            quoted ^= *c == '"';
-            ck_assert_msg(*c != '<', "a bare < in a tag: %.20s", c);
-        }
-        ck_assert_msg(*c == '>', "a tag without end");
-        size_t n = strcspn(tag + (*tag == '/'), " />?");
-        if (*tag == '?')
-            continue;
-        if (*tag == '/') {
-            ck_assert_int_gt(depth, 0);
-            --depth;
-            ck_assert_msg(n == length[depth] && strncmp(tag + 1, open[depth], n) == 0, "</%.*s> closes nothing", (int)n,
-                          tag + 1);
-            continue;
-        }
-        count += strlen(name) == n && strncmp(tag, name, n) == 0;
-        if (c[-1] != '/') {
-            ck_assert_int_lt(depth, 16);
-            open[depth] = tag;
-            length[depth++] = n;
-        }
-    }
-    ck_assert_int_eq(depth, 0);
-    return count;
-}
-
 START_TEST(junit_is_well_formed)
 {
     lc_report report;
@@ -202,6 +161,33 @@ START_TEST(junit_is_well_formed)
     ck_assert_ptr_nonnull(strstr(text, "type=\"undecided\""));
     ck_assert_ptr_nonnull(strstr(text, "&lt;1760&gt; &amp; more"));
     lc_report_release(&report);
+}
+END_TEST
+
+/* Any bytes: what is UTF-8 stays, what is not becomes '?', and nothing vanishes. */
+START_TEST(texts_of_any_bytes)
+{
+    static const char *const cases[][3] = {
+        {"m\xc3\xbc \xe2\x82\xac \xf0\x9f\x98\x80", "m\xc3\xbc \xe2\x82\xac \xf0\x9f\x98\x80", "m\xc3\xbc \xe2\x82\xac \xf0\x9f\x98\x80"},
+        {"a\xff" "b\x80", "a?b?", "a?b?"},                          /* no first byte, */
+        {"\xc0\xaf \xe0\x80\x80", "?? ???", "?? ???"},           /* overlong, */
+        {"\xed\xa0\x80 \xf4\x90\x80\x80", "??? ????", "??? ????"}, /* surrogate, too large, */
+        {"\xe2\x82", "??", "??"},                                   /* cut off */
+        {"\x01<\"\x1b", "\x01<\"\x1b", " &lt;&quot; "},
+        {"\xef\xbf\xbf", "\xef\xbf\xbf", " "}, /* XML has no U+FFFF */
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
+        char xml[64] = "";
+        json_t *o = lc_json_text(cases[i][0]);
+        ck_assert_str_eq(json_string_value(o), cases[i][1]);
+        json_decref(o);
+        FILE *out = fmemopen(xml, sizeof xml, "w");
+        lc_xml_text(out, cases[i][0]);
+        fclose(out);
+        ck_assert_str_eq(xml, cases[i][2]);
+    }
+    ck_assert_ptr_null(json_string("\xff")); /* why this is needed */
+    ck_assert_ptr_null(json_real(NAN));
 }
 END_TEST
 
@@ -303,6 +289,7 @@ Suite *lc_suite_report(void)
     tcase_add_test(tc, json_reads_back);
     tcase_add_test(tc, json_has_null_for_what_is_no_number);
     tcase_add_test(tc, junit_is_well_formed);
+    tcase_add_test(tc, texts_of_any_bytes);
     tcase_add_test(tc, text_tells_what_failed);
     tcase_add_test(tc, behaviour_is_told);
     tcase_add_test(tc, status_is_the_worst_row);

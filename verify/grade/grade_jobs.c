@@ -1,0 +1,124 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ *
+ * What is claimed of a file: always what would be claimed of the reference, whatever the file says of itself.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "verify/grade/grading.h"
+
+/* Another seed for each test, so that two of them never draw the same scene or the same numbers (SplitMix64's mixing, Steele, Lea,
+ * Flood: Fast splittable pseudorandom number generators, OOPSLA 2014). */
+uint64_t lc_grade_seed(uint64_t seed, const char *test)
+{
+    uint64_t z = seed + 0x9e3779b97f4a7c15u * (1 + (uint64_t)lc_arm(test));
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return z ^ (z >> 31);
+}
+
+static const lc_check *check_of(const char *name)
+{
+    for (const lc_check *const *c = lc_checks; *c; ++c)
+        if (strcmp((*c)->name, name) == 0)
+            return *c;
+    return NULL;
+}
+
+/* Drops the claims that the test does not ask about, and puts the file in the reference's place. */
+static void choose(lc_job *job, int first, const lc_grading *g)
+{
+    lc_claims *claims = &job->claims;
+    const lc_test *test = job->test;
+    int kept = first;
+    for (int i = first; i < claims->count; ++i) {
+        lc_claim *c = &claims->items[i];
+        int is_asked = !c->decide && (test->max_bounces < 0 || (c->min_bounces == test->min_bounces &&
+                                                                c->max_bounces == test->max_bounces)) &&
+                       (!test->relation[0] || (c->relation && strcmp(c->relation, test->relation) == 0));
+        if (!is_asked)
+            continue;
+        c->estimator = g->estimator;
+        if (!c->relation)
+            c->slack = fmin(c->slack, 1); /* the assignment's margin is wide enough for all */
+        claims->items[kept++] = *c;
+    }
+    claims->count = kept;
+}
+
+static lc_status claim_mean(lc_job *job, const lc_scene *scene, const lc_grading *g, lc_error *err)
+{
+    const lc_test *test = job->test;
+    lc_claim *claim = lc_claims_add(&job->claims, check_of("equality"), scene, g->estimator);
+    if (!claim)
+        return lc_fail(err, LC_FAULT, "out of memory for the claims");
+    claim->min_bounces = test->min_bounces < 0 ? 0 : test->min_bounces;
+    claim->max_bounces = test->max_bounces < 0 ? g->assignment->bounces : test->max_bounces;
+    claim->other = g->reference;
+    claim->source = "the reference of the assignment";
+    return LC_OK;
+}
+
+static lc_status plan_scene(lc_job *job, const char *name, const lc_grading *g, lc_error *err)
+{
+    const lc_test *test = job->test;
+    lc_scene *scene;
+    int before = job->claims.count;
+    lc_status status = lc_suite_scene(&scene, name, job->seed, g->options->load, err);
+    if (status != LC_OK)
+        return status;
+    job->scenes[job->scene_count++] = scene;
+    if (test->kind == LC_KIND_MEAN)
+        return claim_mean(job, scene, g, err);
+    if (test->kind != LC_KIND_CHECK)
+        return LC_OK;
+    const lc_check *check = check_of(test->check);
+    status = check->plan(check, &job->claims, scene, g->reference, err);
+    choose(job, before, g);
+    if (status == LC_OK && job->claims.count == before)
+        return lc_fail(err, LC_BAD_INPUT, "%s: test %s: the check %s says nothing about %s over %s%s", g->assignment->path,
+                       test->name, test->check, g->reference->name, name,
+                       test->relation[0] || test->max_bounces >= 0 ? " with this relation and these bounces" : "");
+    for (int i = before; i < job->claims.count && status == LC_OK; ++i)
+        if (job->claims.items[i].max_bounces > g->assignment->bounces)
+            status = lc_fail(err, LC_BAD_INPUT, "%s: test %s: over %s the check %s asks for %d bounces, the assignment for %d only",
+                             g->assignment->path, test->name, name, test->check, job->claims.items[i].max_bounces,
+                             g->assignment->bounces);
+    return status;
+}
+
+lc_status lc_grading_plan(lc_grading *g, lc_error *err)
+{
+    lc_status status = LC_OK;
+    for (int i = 0; i < g->assignment->test_count && status == LC_OK; ++i) {
+        lc_job *job = &g->jobs[i];
+        job->test = &g->assignment->tests[i];
+        job->seed = lc_grade_seed(g->options->seed, job->test->name);
+        for (int s = 0; s < job->test->scene_count && status == LC_OK; ++s)
+            status = plan_scene(job, job->test->scenes[s], g, err);
+        g->rows += job->test->kind == LC_KIND_VARIANCE ? job->scene_count : job->claims.count;
+    }
+    return status;
+}
+
+void lc_grading_release(lc_grading *g)
+{
+    for (int i = 0; i < LC_MOST_TESTS; ++i) {
+        lc_claims_release(&g->jobs[i].claims);
+        for (int s = 0; s < g->jobs[i].scene_count; ++s)
+            lc_scene_free(g->jobs[i].scenes[s]);
+    }
+    lc_sentences_close(g->sentences);
+    lc_jail_close(g->jail);
+}
+
+void lc_grading_options(lc_verify_options *out, const lc_grading *g, const lc_job *job)
+{
+    lc_verify_options_init(out);
+    out->margin = g->assignment->margin;
+    out->false_fail = out->false_pass = g->assignment->false_failure;
+    out->seed = job->seed;
+    out->threads = g->options->threads;
+    out->estimator = g->estimator;
+}

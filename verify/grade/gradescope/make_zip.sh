@@ -1,0 +1,34 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# usage: make_zip.sh ASSIGNMENT|FILE.json OUT.zip
+# An autograder for Gradescope: setup.sh, run_autograder and assignment.json at its root, and what lightcheck is built from.
+set -eu
+cd "$(dirname "$0")/../../.."
+assignment=$1
+case $assignment in
+*.json) ;;
+*) assignment=verify/assignments/$assignment.json ;;
+esac
+[ -r "$assignment" ] || {
+    echo "make_zip.sh: no assignment $assignment" >&2
+    exit 2
+}
+command -v zip >/dev/null || {
+    echo 'make_zip.sh: zip is missing: apt-get install zip' >&2
+    exit 2
+}
+mkdir -p "$(dirname "$2")"
+out=$(cd "$(dirname "$2")" && pwd)/${2##*/}
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+trap 'exit 1' HUP INT TERM
+
+cp verify/grade/gradescope/setup.sh verify/grade/gradescope/run_autograder "$folder"
+cp "$assignment" "$folder/assignment.json"
+mkdir "$folder/lightcheck"
+cp -R Makefile setup.sh LICENSE LICENSE-MIT src estimators scenes verify "$folder/lightcheck"
+rm -rf "$folder/lightcheck/verify/tests" "$folder/lightcheck/verify/proof"
+chmod +x "$folder/setup.sh" "$folder/run_autograder"
+rm -f "$out"
+cd "$folder"
+zip -qr "$out" .

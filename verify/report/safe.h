@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ *
+ * safe.h: numbers and texts of any origin as JSON and XML. jansson returns NULL for NaN, for infinities and for what is not
+ * UTF-8, and drops a key whose value is NULL without a word; a compiler's messages quote a student's file byte by byte.
+ */
+#ifndef LC_SAFE_H
+#define LC_SAFE_H
+
+#include <jansson.h>
+#include <stdio.h>
+
+/* null for NaN and infinities. */
+json_t *lc_json_number(double value);
+/* Bytes that are no UTF-8 become '?'. NULL only without memory. */
+json_t *lc_json_text(const char *text);
+/* For an attribute in double quotes, or between tags; what XML 1.0 cannot hold becomes a space, what is no UTF-8 '?'. */
+void lc_xml_text(FILE *out, const char *text);
+
+#endif
