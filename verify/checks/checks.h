@@ -50,6 +50,7 @@ typedef struct lc_claim {
     int may_be_still;   /* declared: an estimator may have no variance here, and is then held to the values exactly */
     int full_only;    /* 1: for the full suite only: too dear for the quick one, or told by another of its rows */
     double tolerance;   /* error of the expected values, relative to their mean; a difference below it is none */
+    double noise;       /* in the full suite PASS waits, while there are looks, until the standard error of the mean is below this; 0: it does not */
     /* Of relations. The claims own the scenes of the terms. */
     const char *relation; /* its name, shown behind the scene's */
     int paired;           /* 1: the terms draw the same numbers; differences are tested sample by sample, and where all

@@ -150,6 +150,7 @@ static lc_status plan(const lc_check *self, lc_claims *claims, const lc_scene *s
         claim->min_bounces = c->min_bounces;
         claim->max_bounces = c->max_bounces;
         claim->tolerance = c->band;
+        claim->noise = c->band / 5;
         claim->margin = 2 * c->band;
         claim->exact = c->band == 0; /* black */
         claim->source = c->source;

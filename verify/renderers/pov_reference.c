@@ -58,6 +58,7 @@ const lc_pov_case lc_pov_cases[] = {
     {"bright_room", LC_POV_RADIOSITY, 12, 4, 100, 1, 3, 0.015, 0, "path", GATHERED},
     {"two_patches", LC_POV_DIRECT, 24, 8, 1, 1, 1, 0.002, 0, "light_direct", DIRECT},
     {"two_surfaces", LC_POV_RADIOSITY, 12, 8, 400, 1, 2, 0.015, 0, "path", GATHERED},
+    {"cornell", LC_POV_RADIOSITY, 8, 2, 400, 1, 3, 0.015, 0, "path_nee", GATHERED},
     {"sky_wall", LC_POV_RADIOSITY, 2, 4, 400, 1, 1, 0.015, 0, "hemisphere_direct", SKY_CUT},
     {"enclosure", LC_POV_DIRECT, 32, 4, 1, 1, 1, 0.002, 0, "light_direct", DIRECT},
     {"enclosure_point", LC_POV_DIRECT, 2, 8, 1, 1, 1, 0.002, 0, "light_direct", DELTA},

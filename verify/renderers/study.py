@@ -4,7 +4,8 @@
 
     study.py -o FILE.md [--report DIR]        DIR: of a `lightcheck verify --renderer ... --report DIR` that was made already
 
-Exit status: 0 written, 2 no Mitsuba, 4 something failed.
+The llvm variant needs a libLLVM that Mitsuba can use (libllvm19 of Debian; 14 and 16 abort), installed by hand; where there is
+none the file says so. Exit status: 0 written, 2 no Mitsuba, 4 something failed.
 """
 import argparse
 import json
@@ -15,15 +16,17 @@ import subprocess
 import sys
 import tempfile
 
+import mitsuba_render
+
 PROGRAM = os.environ.get("LIGHTCHECK", "build/lightcheck")
 ADAPTER = "verify/renderers/mitsuba.sh"
 LIFT = 1500 * 2.0**-24  # Mitsuba's RayEpsilon in float32
 
 
-def report(folder):
-    """The quick suite through the adapter."""
-    environment = dict(os.environ, PYTHON=sys.executable)
-    command = [PROGRAM, "verify", "--renderer", ADAPTER, "--report", folder]
+def report(folder, *selection, **environment):
+    """The quick suite through the adapter, or a part of it."""
+    environment = dict(os.environ, PYTHON=sys.executable, **environment)
+    command = [PROGRAM, "verify", "--renderer", ADAPTER, "--report", folder, *selection]
     status = subprocess.run(command, env=environment, stdout=subprocess.DEVNULL, check=False).returncode
     if status not in (0, 1, 3):
         raise RuntimeError(f"{' '.join(command)} ended with status {status}")
@@ -112,6 +115,84 @@ def write_lift(out, np):
               f"{change[2]:.4f}% (R, G, B); Mitsuba was found to be off by -0.006%.\n")
 
 
+def write_sizes(out, mi, np, images=32, samples=16):
+    """The same box at three sizes with the same random numbers, light of one bounce: what a length that does not scale does."""
+    means = {}
+    for name in ("cornell", "cornell_small", "cornell_large"):
+        scene, glow = mi.load_file(f"scenes/{name}.xml"), mi.load_dict({"type": "path", "max_depth": 1})
+        how = mi.load_dict({"type": "direct"})
+        means[name] = np.array([sum(sign * np.mean(np.array(mi.render(scene, integrator=i, spp=samples, seed=seed)), dtype=np.float64)
+                                    for sign, i in ((1, how), (-1, glow))) for seed in range(images)])
+    whole = means["cornell"].mean()
+    out.write("\nThe same box at other sizes, reflected light of one bounce:\n\n| scene | mean / that of `cornell` |\n|---|---|\n")
+    for name in ("cornell_small", "cornell_large"):
+        differences = (means[name] - means["cornell"]) / whole
+        out.write(f"| {name} | {1 + differences.mean():.5f} +- {differences.std(ddof=1) / math.sqrt(images):.5f} |\n")
+
+
+# (integrator, scene, check): a closed form, a reference by another program, and where `path` fails.
+JUDGED = (("direct", "plane_tilted", "analytic"), ("direct", "furnace_sphere", "furnace"), ("direct", "mirror_sky", "specular"),
+          ("volpath", "plane_tilted", "analytic"), ("volpath", "furnace_sphere", "furnace"), ("volpath", "glass_sphere", "specular"),
+          ("ptracer", "plane_tilted", "analytic"))
+
+
+def write_integrators(out, folder):
+    runs = [("scalar_rgb", *j) for j in JUDGED]
+    if mitsuba_render.llvm_works():
+        runs += [("llvm_ad_rgb", "path", s, c) for s, c in (("plane_tilted", "analytic"), ("mirror_corridor", "specular"))]
+    else:
+        out.write("`llvm_ad_rgb` does not run here: its LLVM is missing, or of a version that aborts while it compiles.\n\n")
+    out.write("| variant | integrator | check | scene | bounces | verdict | mean / expected | interval |\n|---|---|---|---|---|---|---|---|\n")
+    for n, (variant, integrator, scene, check) in enumerate(runs):
+        here = os.path.join(folder, str(n))
+        report(here, "--scene", scene, "-c", check, VARIANT=variant, INTEGRATOR=integrator)
+        with open(os.path.join(here, "report.json"), encoding="utf-8") as file:
+            rows = json.load(file)["rows"]
+        for r in rows:
+            exact = r["exact"] or r["ratio"] is None or None in r["interval"]
+            numbers = "exact | " if exact else f"{r['ratio']:.5f} | {r['interval'][0]:.5f} .. {r['interval'][1]:.5f}"
+            out.write(f"| {variant} | {integrator} | {check} | {scene} | {r['min_bounces']} to {r['max_bounces']} | {r['verdict']} | {numbers} |\n")
+
+
+def povray(scene, image, side):
+    subprocess.run(["povray", f"+I{scene}", f"+O{image}", "+FE", f"+W{side}", f"+H{side}", "-A", "-D", "+WT1"],
+                   check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+
+FURNACE = """#version 3.7;
+global_settings {{
+    assumed_gamma 1.0 max_trace_level 30 adc_bailout 1e-6
+    radiosity {{ recursion_limit 20 count 20 error_bound 0.1 always_sample on gray_threshold 0 brightness 1 {bailout} }}
+}}
+camera {{ location <0, 0, 0> right x up y direction z }}
+sphere {{ <0, 0, 0>, 100 pigment {{ rgb 1 }} finish {{ ambient 0 emission 1 diffuse 0.5 }} }}
+"""
+
+
+def write_bailout(out, mi, np, folder):
+    out.write("| radiosity's adc_bailout | shown, expected 2 |\n|---|---|\n")
+    for name, bailout in ((".01, the default", ""), ("1e-4", "adc_bailout 1e-4")):
+        scene, image = os.path.join(folder, "furnace.pov"), os.path.join(folder, "furnace.exr")
+        with open(scene, "w", encoding="utf-8") as file:
+            file.write(FURNACE.format(bailout=bailout))
+        povray(scene, image, 8)
+        out.write(f"| {name} | {read_rgb(mi, np, image).mean():.6f} |\n")
+
+
+def write_table(out, mi, np, folder):
+    ours = os.path.join(folder, "sky.exr")
+    subprocess.run([PROGRAM, "render", "sky_wall", "-e", "hemisphere_direct", "-s", "16384", "--min-bounces", "1", "-o", ours],
+                   check=True, stdout=subprocess.DEVNULL)
+    expected = read_rgb(mi, np, ours).mean()
+    out.write("| rays of a gathering | POV-Ray / ours - 1 |\n|---|---|\n")
+    for count in (200, 400, 1600):
+        pov, image = os.path.join(folder, "wall.pov"), os.path.join(folder, "wall.exr")
+        subprocess.run([PROGRAM, "export", "sky_wall", "--to", "pov", "--mode", "radiosity", "--bounces", "1", "--count", str(count), "-o", pov],
+                       check=True)
+        povray(pov, image, 128)
+        out.write(f"| {count} | {100 * (read_rgb(mi, np, image).mean() / expected - 1):+.3f}% |\n")
+
+
 def read_rgb(mi, np, path):
     bitmap = mi.Bitmap(path)
     names = [field.name for field in bitmap.struct_()]
@@ -166,19 +247,26 @@ Again: `--scene furnace_sphere`.
 
 """, """
 ### Other integrators and variants
-INTEGRATOR and VARIANT of the adapter choose. Seen by hand, in runs that no target repeats: `direct` and `volpath` were judged on `plane_rectangle`, `plane_tilted`, `cornell`,
-and `direct` on `furnace_sphere` and `mirror_sky`: PASS and FAIL as for `path`, 1.0017 and 0.9416 where it fails; `ptracer` on `plane_tilted`: PASS. `llvm_ad_rgb`
-needs libllvm 19: with 14 and 16 the process aborts ("cannot select fminimum"); its corridor is off by the same 0.005%.
+INTEGRATOR and VARIANT of the adapter choose; rows of `lightcheck verify --renderer verify/renderers/mitsuba.sh --scene SCENE -c CHECK`.
 
+""", """
 ## POV-Ray
+### Few points for a lamp
 Its area lights are points. What N x N Gauss-Legendre points of a lamp as wide as its distance is high leave
 (`plane_rectangle`, the exporter's lamps):
 
 """, """
-`area_light` with `area_illumination` multiplies the mean visibility by the mean unshadowed light: 23% too dark where a
-horizon cuts a lamp at a quarter; radiosity's own `adc_bailout`, .01 by default, ends a furnace of albedo 1/2 after six bounces
-(1.984375 for 2). The exporter avoids both (docs/povray.md). With them avoided all images agree: the povray rows of
-`lightcheck verify`.
+### Radiosity stops early by default
+A closed white sphere that glows with 1 and has albedo 1/2 shows 2. Its own `adc_bailout`, not that of the scene, ends a chain:
+
+""", """
+### Radiosity has one table of directions
+`sky_wall`, a floor beside a wall under a sky, gathered; ours is `hemisphere_direct`. More rays change nothing: they are the first
+of one table for all points, and neighbours share what they gathered.
+
+""", """
+The exporter avoids the first two (docs/povray.md), and the band of `sky_wall` is wide for the third. With that all images agree: the
+povray rows of `lightcheck verify`.
 """]
 
 
@@ -195,10 +283,17 @@ def write(out, folder):
     write_inside(out, mi, np)
     out.write(TEXT[3])
     write_lift(out, np)
+    write_sizes(out, mi, np)
     out.write(TEXT[4])
     with tempfile.TemporaryDirectory() as work:
+        write_integrators(out, work)
+        out.write(TEXT[5])
         write_points(out, mi, np, work)
-    out.write(TEXT[5])
+        out.write(TEXT[6])
+        write_bailout(out, mi, np, work)
+        out.write(TEXT[7])
+        write_table(out, mi, np, work)
+    out.write(TEXT[8])
 
 
 def main():
