@@ -107,12 +107,13 @@ static void *work(void *user)
     return NULL;
 }
 
-/* An estimator from a file may have its own process, and another renderer has the machine: one row at a time. */
+/* Three more than cores: they wait for POV-Ray. An estimator from a file may have its own process, and another renderer has the machine: one
+ * row at a time. */
 static int workers_of(const schedule *s)
 {
     const lc_verify_options *o = s->model->options;
     int is_shipped = !o->renderer && (!o->estimator || lc_is_registered(o->estimator));
-    return !is_shipped ? 1 : s->threads < 64 ? s->threads : 64;
+    return !is_shipped || s->threads == 1 ? 1 : s->threads < 61 ? s->threads + 3 : 64;
 }
 
 lc_status lc_judge_all(lc_report *report, const lc_session *model, const lc_claim *const *claims, int count, lc_error *err)

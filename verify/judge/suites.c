@@ -354,7 +354,7 @@ static const struct {
     {"path_full", "furnace", "furnace_sphere", 5, 1},
     {"path_full", "furnace", "furnace_checker", 8, 0},
     {"path_full", "furnace", "thermal_furnace", 24, 1},
-    {"path_full", "equality", "cornell", 5, 1},
+    {"path_full", "equality", "cornell", 5, 0},
     {"direct_mis", "analytic", "sky", 1, 1},
     {"direct_mis", "analytic", "mixed_lights", 1, 1},
     {"direct_mis", "analytic", "five_lights", 1, 0},
