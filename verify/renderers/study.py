@@ -260,9 +260,9 @@ Its area lights are points. What N x N Gauss-Legendre points of a lamp as wide a
 A closed white sphere that glows with 1 and has albedo 1/2 shows 2. Its own `adc_bailout`, not that of the scene, ends a chain:
 
 """, """
-### Radiosity has one table of directions
-`sky_wall`, a floor beside a wall under a sky, gathered; ours is `hemisphere_direct`. More rays change nothing: they are the first
-of one table for all points, and neighbours share what they gathered.
+### More radiosity rays do not converge to the right value
+`sky_wall`, a floor beside a wall under a sky, gathered; ours is `hemisphere_direct`. More rays change nothing. Presumably
+since they are the first of one table for all points, and neighbours share what they gathered.
 
 """, """
 The exporter avoids the first two (docs/povray.md), and the band of `sky_wall` is wide for the third. With that all images agree: the
