@@ -137,6 +137,7 @@ START_TEST(colour_has_sign_and_place)
     ck_assert(fabs(pixel_at(difference, 5, 30)->c[1].mean + 0.5) < 1e-6);
     ck_assert(pixel_at(difference, 9, 9)->c[1].mean == 0 && pixel_at(should, 9, 9)->c[1].mean == 1);
     ck_assert(fabs(lc_pixel_variance(pixel_at(difference, 0, 0), 0) / 1e-5 - 1) < 1e-6);
+    ck_assert(!difference->has_third && !should->has_third); /* 0 would say that nothing is skewed */
     lc_film_free(difference);
     lc_film_free(should);
     lc_film_free(is);
