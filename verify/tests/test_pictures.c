@@ -249,10 +249,13 @@ Suite *lc_suite_pictures(void)
     Suite *suite = suite_create("pictures");
     TCase *tc = tcase_create("core");
     tcase_add_checked_fixture(tc, make_folder, remove_folder);
-    tcase_set_timeout(tc, 60);
     tcase_add_test(tc, colour_has_sign_and_place);
     tcase_add_test(tc, films_and_pairs);
     tcase_add_test(tc, no_folder_no_pictures);
+    suite_add_tcase(suite, tc);
+    tc = tcase_create("judged");
+    tcase_add_checked_fixture(tc, make_folder, remove_folder);
+    tcase_set_timeout(tc, 60);
     tcase_add_test(tc, each_kind_of_row_has_pictures);
     suite_add_tcase(suite, tc);
     return suite;
