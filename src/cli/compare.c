@@ -66,9 +66,11 @@ const lc_command lc_command_compare = {
     "compare",
     "A.exr B.exr [--margin M]",
     "shows whether two renders have the same mean",
-    "Both must come with their errors (channels variance.R/G/B and samples) and from different streams: other "
-    "estimators\n"
-    "or other seeds. PASS (0): shown equal within the margin; FAIL (1): shown different, at any scale from pixel to "
+    "Both must come with their errors (channels variance.R/G/B and samples, at least 256 a pixel) and from different "
+    "streams:\n"
+    "other estimators or other seeds. Without skewness.R/G/B, which `render` writes, images of rare bright samples end "
+    "undecided.\n"
+    "PASS (0): shown equal within the margin; FAIL (1): shown different, at any scale from pixel to "
     "image, at an\n"
     "error probability of 1e-6; UNDECIDED (3): neither.\n",
     run,

@@ -62,6 +62,7 @@ static lc_status write_image(const export_arguments *a, const lc_scene_desc *des
         snprintf(film->scene, sizeof film->scene, "%s", desc->name);
         snprintf(film->estimator, sizeof film->estimator, "povray");
         film->count = 1;
+        film->has_third = 0;
         film->max_bounces = a->pov.bounces;
         status = lc_exr_write(a->image, film, err);
     }

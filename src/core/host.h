@@ -214,7 +214,7 @@ typedef struct lc_range {
 typedef struct lc_film {
     int width, height;
     lc_pixel *pixels; /* row by row from the top */
-    int has_third;    /* 0 when it came from a file: then m3, max and the batches are unknown (0) */
+    int has_third;    /* 0: m3, max and the batches are unknown (0). From a file, max and the batches always are */
     char scene[64], estimator[64];
     uint64_t seed;
     uint32_t arm;
@@ -241,8 +241,8 @@ void lc_pixel_merge(lc_pixel *into, const lc_pixel *from);
 double lc_pixel_variance(const lc_pixel *pixel, int channel);
 /* Pastes shards of one render (with the last of them it is 0 of 1), or averages whole renders of different streams or
  * ranges, weighted by n. LC_BAD_INPUT, and `into` untouched, for different sizes, scenes, estimators or bounces, a
- * shard or sample that both have, a film of unknown samples (count = 0). Third moments, max and batches survive only when
- * both have them. */
+ * shard or sample that both have, a film of unknown samples (count = 0). Third moments survive only when both have them; max
+ * and batches mean something only when neither came from a file. */
 lc_status lc_film_merge(lc_film *into, const lc_film *from, lc_error *err);
 /* Tiles of LC_TILE^2 pixels, row by row, are what threads and shards share out. Tile t belongs to shard t mod shards. */
 enum { LC_TILE = 8 };

@@ -15,9 +15,10 @@
 #include "io/exr_attr.h"
 #include "io/outfile.h"
 
-/* Our channels; 0..2 mean, 3..5 variance. */
-enum { MEAN = 0, VARIANCE = 3, SAMPLES = 6, CHANNELS = 7 };
-static const char *const channel_names[CHANNELS] = {"R", "G", "B", "variance.R", "variance.G", "variance.B", "samples"};
+/* Our channels; 0..2 mean, 3..5 variance, 7..9 skewness: last, because films without third moments leave it out. */
+enum { MEAN = 0, VARIANCE = 3, SAMPLES = 6, SKEWNESS = 7, CHANNELS = 10 };
+static const char *const channel_names[CHANNELS] = {"R",          "G",       "B",          "variance.R", "variance.G",
+                                                    "variance.B", "samples", "skewness.R", "skewness.G", "skewness.B"};
 
 /* A file that is being read or written; the library's callbacks find it as their user data. */
 struct stream {
@@ -107,7 +108,7 @@ static exr_result_t put_header(exr_context_t exr, const lc_film *film)
     exr_result_t result = exr_add_part(exr, NULL, EXR_STORAGE_SCANLINE, &part);
     if (!result)
         result = exr_initialize_required_attr_simple(exr, 0, film->width, film->height, EXR_COMPRESSION_ZIP);
-    for (int i = 0; i < CHANNELS && !result; ++i)
+    for (int i = 0; i < (film->has_third ? CHANNELS : SKEWNESS) && !result; ++i)
         result = exr_add_channel(exr, 0, channel_names[i], i == SAMPLES ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT,
                                  EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
     if (!result)
@@ -129,12 +130,22 @@ static int channel_index(const char *name)
     return -1;
 }
 
+/* Of the samples: (m3 / n) / (m2 / n)^(3/2), in [-sqrt(n), sqrt(n)]. 0 where the file's variance is 0 or infinite: what is
+ * read must be written alike again. */
+static float skewness_of(const lc_pixel *pixel, int channel)
+{
+    const lc_moments *m = &pixel->c[channel];
+    float variance = (float)lc_pixel_variance(pixel, channel);
+    return variance > 0 && isfinite(variance) ? (float)(m->m3 * sqrt((double)pixel->n) / (m->m2 * sqrt(m->m2))) : 0;
+}
+
 /* One pixel into the plane of each channel, `plane` samples apart. */
 static void put_pixel(const lc_pixel *pixel, union sample *out, size_t plane)
 {
     for (int c = 0; c < 3; ++c) {
         out[(size_t)(MEAN + c) * plane].f = (float)pixel->c[c].mean;
         out[(size_t)(VARIANCE + c) * plane].f = (float)lc_pixel_variance(pixel, c);
+        out[(size_t)(SKEWNESS + c) * plane].f = skewness_of(pixel, c);
     }
     out[SAMPLES * plane].u = (uint32_t)pixel->n;
 }
@@ -217,7 +228,7 @@ struct image {
     int left, top; /* of the data window */
     int tiled;
     int block_w, block_h; /* largest part that is decoded at once */
-    int has[CHANNELS];
+    int has[CHANNELS], has_third;
     union sample *buffer; /* one block, a plane for each channel */
     int samples_type;     /* EXR_PIXEL_UINT or _FLOAT */
     size_t plane;         /* samples of a plane */
@@ -260,6 +271,9 @@ static lc_status find_channels(struct image *image, exr_const_context_t exr, str
     }
     /* Without variances, another program's `samples` may be anything. */
     image->has[SAMPLES] = image->has[SAMPLES] && image->has[VARIANCE];
+    image->has_third = image->has[SAMPLES];
+    for (int c = 0; c < 3; ++c)
+        image->has_third = image->has_third && image->has[VARIANCE + c] && image->has[SKEWNESS + c];
     for (int c = MEAN; c < MEAN + 3; ++c)
         if (!image->has[c])
             return lc_fail(stream->err, LC_BAD_INPUT, "%s: no channel %s, expected R G B as half or float",
@@ -320,14 +334,30 @@ static uint64_t count_of(const union sample *in, int type)
     return in->f >= 1 && in->f <= 4294967040.0f ? (uint64_t)in->f : 0;
 }
 
+/* The third moment from the skewness, once n and m2 are there. With fewer than two samples there is none. */
+static lc_status take_skewness(lc_pixel *pixel, int channel, double skewness, int x, int y, const struct stream *stream)
+{
+    lc_moments *m = &pixel->c[channel];
+    double n = (double)pixel->n;
+    if (n < 2)
+        return LC_OK;
+    if (!(fabs(skewness) <= sqrt(n) * (1 + 1e-6))) /* rounded to float */
+        return lc_fail(stream->err, LC_BAD_INPUT,
+                       "%s: a skewness of %g at pixel %d,%d, expected at most %g, the root of %.0f samples", stream->path,
+                       skewness, x, y, sqrt(n), n);
+    m->m3 = skewness * m->m2 * sqrt(m->m2 / n);
+    return LC_OK;
+}
+
 static lc_status take_pixel(lc_film *film, const struct image *image, int x, int y, const union sample *in,
                             const struct stream *stream)
 {
     lc_pixel *pixel = &film->pixels[(size_t)y * (size_t)film->width + (size_t)x];
+    lc_status status = LC_OK;
     int finite = 1;
     pixel->n = image->has[SAMPLES] ? count_of(&in[SAMPLES * image->plane], image->samples_type) : 0;
     double n = (double)pixel->n;
-    for (int c = 0; c < 3; ++c) {
+    for (int c = 0; c < 3 && status == LC_OK; ++c) {
         double mean = in[(size_t)(MEAN + c) * image->plane].f;
         double variance = image->has[VARIANCE + c] ? in[(size_t)(VARIANCE + c) * image->plane].f : 0;
         if (!(variance >= 0))
@@ -336,6 +366,8 @@ static lc_status take_pixel(lc_film *film, const struct image *image, int x, int
         pixel->c[c].mean = mean;
         pixel->c[c].m2 = pixel->n < 2 ? 0 : variance * n * (n - 1);
         finite = finite && isfinite(mean);
+        if (image->has_third)
+            status = take_skewness(pixel, c, in[(size_t)(SKEWNESS + c) * image->plane].f, x, y, stream);
     }
     if (!finite && film->bad++ == 0) {
         film->bad_x = x;
@@ -343,7 +375,7 @@ static lc_status take_pixel(lc_film *film, const struct image *image, int x, int
         for (int c = 0; c < 3; ++c)
             film->bad_value[c] = pixel->c[c].mean;
     }
-    return LC_OK;
+    return status;
 }
 
 /* Decodes the block whose upper left corner is (x, y) of the image into image->buffer. */
@@ -369,7 +401,10 @@ static exr_result_t decode_block(exr_decode_pipeline_t *pipe, exr_const_context_
 static lc_status start_film(lc_film **out, exr_const_context_t exr, const struct image *image, struct stream *stream)
 {
     lc_status status = lc_film_create(out, image->width, image->height, stream->err);
-    return status == LC_OK ? lc_exr_take_attributes(*out, exr, stream->path, stream->err) : status;
+    if (status != LC_OK)
+        return status;
+    (*out)->has_third = image->has_third;
+    return lc_exr_take_attributes(*out, exr, stream->path, stream->err);
 }
 
 /* Decodes all blocks. The film is made after the first: a few hostile bytes shall not ask for gigabytes. */
@@ -435,8 +470,6 @@ lc_status lc_exr_read(lc_film **out, const char *path, lc_error *err)
     if (status != LC_OK) {
         lc_film_free(*out);
         *out = NULL;
-        return status;
     }
-    (*out)->has_third = 0;
-    return LC_OK;
+    return status;
 }

@@ -261,6 +261,7 @@ static lc_status write_image(const char *path, const lc_pov_case *c, const lc_po
     film->min_bounces = c->min_bounces;
     film->max_bounces = c->max_bounces;
     film->count = n;
+    film->has_third = 0;
     for (size_t i = 0; i < (size_t)image->width * (size_t)image->height; ++i) {
         film->pixels[i].n = n;
         for (size_t k = 0; k < 3; ++k) {

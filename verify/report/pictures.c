@@ -17,12 +17,13 @@ const lc_picture_kind lc_picture_kinds[] = {
     {NULL, NULL},
 };
 
-/* An image in the making: mean and variance of the mean, as a film, since that is what EXR is written from. */
+/* An image in the making: mean and variance of the mean, no more, as a film, since that is what EXR is written from. */
 static lc_status create(lc_film **out, const lc_film *like, lc_error *err)
 {
     lc_status status = lc_film_create(out, like->width, like->height, err);
     if (status != LC_OK)
         return status;
+    (*out)->has_third = 0;
     snprintf((*out)->scene, sizeof (*out)->scene, "%s", like->scene);
     (*out)->min_bounces = like->min_bounces;
     (*out)->max_bounces = like->max_bounces;

@@ -5,7 +5,7 @@
 # Prints mutant and the tests that killed it. Exit status 0: all are dead; 1: one lives, or could not be made.
 set -eu
 cd "$(dirname "$0")/../.."
-suites='judge_mutants stats_estimate stats_pyramid stats film'
+judge='judge_mutants stats_estimate stats_pyramid stats film' shown='pictures/core exr/films verify/words' # SUITE or SUITE/CASE
 temporary=$(mktemp -d)
 copy=$temporary/tree
 mkdir "$copy"
@@ -18,10 +18,16 @@ $make -j2 build/tests
 # Runs the suites as they are now; prints the names of those that failed or ran out of time.
 failing() {
     for suite in $suites; do
-        CK_RUN_SUITE=$suite CK_VERBOSITY=verbose CK_DEFAULT_TIMEOUT=60 "$copy/build/tests" 2>&1 || :
+        case $suite in
+        */*) only=CK_RUN_CASE=${suite#*/} ;;
+        *) only='' ;;
+        esac
+        env $only CK_RUN_SUITE="${suite%/*}" CK_VERBOSITY=verbose CK_DEFAULT_TIMEOUT=60 "$copy/build/tests" 2>&1 || :
     done | sed -n 's/^[^:]*:[0-9]*:[FE]:[^:]*:\([a-z0-9_]*\):.*/\1/p' | sort -u | tr '\n' ' '
 }
+suites="$judge $shown"
 before=$(failing)
+suites=$judge
 if [ -n "$before" ]; then
     echo "judge_mutants: the right judge fails: $before" >&2
     exit 1
@@ -63,6 +69,7 @@ mutant() {
 
 estimate=verify/stats/estimate.c pyramid=verify/stats/pyramid.c budget=verify/stats/budget.c
 claim=verify/judge/claim.c render=src/core/render.c
+pictures=verify/report/pictures.c exr=src/io/exr.c
 
 printf '| %-34s | killed by |\n|---|---|\n' mutant
 
@@ -122,6 +129,20 @@ mutant dependence_not_asked $claim 's/dependent = dependent_channel(.*/dependent
 mutant dependence_shown_by_anything verify/stats/variance.c 's/b->log_p <= 2 \* log(alpha)/b->log_p <= 0.5 * log(alpha)/'
 mutant same_stream_twice $estimate 's/if (a->seed == b->seed && a->arm == b->arm/if (0 \&\& a->arm == b->arm/'
 mutant third_moment_not_merged src/core/film.c 's/m->m3 += o->m3 + square/m->m3 += square/'
+
+# What a FAIL looks like, why a row stays undecided, and what of a film is kept in a file.
+suites=$shown
+mutant picture_of_the_wrong_sign $pictures 's/mean - should,/should - mean,/'
+mutant picture_of_the_wrong_place $pictures 's|\[(size_t)(y / zoom) \* (size_t)difference->width + (size_t)(x / zoom)\]|[(size_t)(x / zoom) * (size_t)difference->width + (size_t)(y / zoom)]|'
+mutant picture_of_what_is_skipped $pictures 's/if (e->skip && e->skip\[i\])/if (0)/'
+mutant picture_of_the_wrong_channel $pictures 's/(x \/ zoom)\].c\[channel\].mean;/(x \/ zoom)].c[0].mean;/'
+mutant picture_without_the_others_noise $pictures 's/mean - should, variance + variance_of/mean - should, variance_of/'
+mutant picture_of_a_pair_doubled $pictures 's/mean - d->c\[c\].mean, 0/mean + d->c[c].mean, 0/'
+mutant picture_without_skewness_has_none $pictures 's/(\*out)->has_third = 0;//'
+mutant guard_called_width $claim 's/image->skewed || isinf(row->low) || isinf(row->high)/image->skewed/'
+mutant file_forgets_the_third_moment $exr 's/m->m3 = skewness \* .*/m->m3 = 0;/'
+mutant file_without_skewness_has_none $exr 's/has_third = image->has_third;/has_third = 1;/'
+mutant sum_of_known_and_unknown_is_known src/core/film.c 's/if (!into->has_third || !from->has_third)/if (!into->has_third \&\& !from->has_third)/'
 
 printf '\n%d wrong judges, %d alive\n' "$made" "$alive"
 [ "$alive" = 0 ] && [ "$made" != 0 ]

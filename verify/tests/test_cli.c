@@ -485,6 +485,31 @@ START_TEST(compare_has_three_answers)
 }
 END_TEST
 
+/* Third moments travel in the file: different counts are decided, and the sum of small renders is. Without them nothing is. */
+START_TEST(compare_knows_the_tails)
+{
+    const char *a = in_folder("a.exr"), *b = in_folder("b.exr"), *c = in_folder("c.exr"), *sum = in_folder("sum.exr");
+    lc_film *film;
+    run(OK, "render", "plane_rectangle", "-s", "256", "--size", "32x32", "-e", "light_direct", "-o", a);
+    run(OK, "render", "plane_rectangle", "-s", "1024", "--size", "32x32", "-e", "three_point", "-o", b);
+    run(OK, "compare", a, b, "--margin", "3%");
+    run(OK, "compare", b, a, "--margin", "3%");
+    run(OK, "render", "plane_rectangle", "-s", "64", "--size", "32x32", "-e", "light_direct", "--seed", "2", "-o", c);
+    run(UNDECIDED, "compare", c, b, "--margin", "3%");
+    ck_assert_ptr_nonnull(strstr(ran.out, "too few samples"));
+    run(OK, "merge", a, c, "-o", sum);
+    run(OK, "compare", sum, b, "--margin", "3%");
+    for (int i = 0; i < 2; ++i) { /* as they were written before there was skewness */
+        ck_assert_int_eq(lc_exr_read(&film, i ? b : a, NULL), LC_OK);
+        film->has_third = 0;
+        ck_assert_int_eq(lc_exr_write(i ? b : a, film, NULL), LC_OK);
+        lc_film_free(film);
+    }
+    run(UNDECIDED, "compare", a, b, "--margin", "3%");
+    ck_assert_ptr_nonnull(strstr(ran.out, "too heavy"));
+}
+END_TEST
+
 /* What `sample` prints last is what a render of that one sample holds. */
 START_TEST(sample_repeats_what_render_saw)
 {
@@ -644,6 +669,7 @@ Suite *lc_suite_cli(void)
     tcase_add_test(tc, renders_to_exr_and_png);
     tcase_add_test(tc, threads_and_shards_change_no_byte);
     tcase_add_test(tc, compare_has_three_answers);
+    tcase_add_test(tc, compare_knows_the_tails);
     tcase_add_test(tc, sample_repeats_what_render_saw);
     tcase_add_test(tc, verify_says_pass_or_fail);
     tcase_add_test(tc, verify_has_formats);

@@ -109,18 +109,51 @@ START_TEST(a_film_there_and_back)
     lc_film *back = read_film();
     ck_assert_int_eq(back->width, 21);
     ck_assert_int_eq(back->height, 37);
-    ck_assert_int_eq(back->has_third, 0);
+    ck_assert_int_eq(back->has_third, 1);
     ck_same_record(back, film);
+    int skewed = 0;
     for (int i = 0; i < 21 * 37; ++i) {
         const lc_pixel *a = &film->pixels[i], *b = &back->pixels[i];
         ck_assert_uint_eq(a->n, b->n);
         for (int c = 0; c < 3; ++c) {
             ck_assert_double_eq(b->c[c].mean, (float)a->c[c].mean);
             ck_assert_double_le(fabs(b->c[c].m2 - a->c[c].m2), 1e-6 * a->c[c].m2);
+            ck_assert_double_le(fabs(b->c[c].m3 - a->c[c].m3), 1e-6 * pow(a->c[c].m2, 1.5));
+            skewed += fabs(b->c[c].m3) > 1e-3 * pow(a->c[c].m2, 1.5);
         }
     }
+    ck_assert_int_gt(skewed, 21 * 37 / 2);
     lc_film_free(back);
     lc_film_free(film);
+}
+END_TEST
+
+/* What has no third moments says so; a sum with it has none, the sum of two that have them does. */
+START_TEST(third_moments_are_there_or_not)
+{
+    lc_film *film = make_film(), *memory = make_film(), *sum[2];
+    memory->shards = film->shards = 1, memory->shard = film->shard = 0;
+    for (int third = 0; third < 2; ++third) {
+        film->seed = 2, film->has_third = 1;
+        ck_assert_int_eq(lc_exr_write(target, film, NULL), LC_OK);
+        sum[third] = read_film();
+        film->seed = 3, film->has_third = third;
+        ck_assert_int_eq(lc_exr_write(target, film, NULL), LC_OK);
+        lc_film *back = read_film();
+        ck_assert_int_eq(back->has_third, third);
+        ck_assert_int_eq(back->pixels[4].c[1].m3 != 0, third);
+        ck_assert_double_gt(back->pixels[4].c[1].m2, 0);
+        ck_assert_int_eq(lc_film_merge(sum[third], back, NULL), LC_OK);
+        ck_assert_int_eq(sum[third]->has_third, third);
+        lc_film_free(back);
+    }
+    for (int i = 0; i < 21 * 37; ++i) {
+        lc_pixel_merge(&memory->pixels[i], &film->pixels[i]);
+        const lc_moments *a = memory->pixels[i].c, *b = sum[1]->pixels[i].c;
+        for (int c = 0; c < 3; ++c)
+            ck_assert_double_le(fabs(b[c].m3 - a[c].m3), 1e-5 * pow(a[c].m2, 1.5));
+    }
+    lc_film_free(sum[0]), lc_film_free(sum[1]), lc_film_free(memory), lc_film_free(film);
 }
 END_TEST
 
@@ -175,6 +208,7 @@ START_TEST(same_film_same_bytes)
     ck_assert_int_eq(lc_exr_write(target, back, NULL), LC_OK);
     struct bytes again = load(target);
     ck_assert_uint_eq(a.size, again.size);
+    ck_assert_mem_eq(a.data, again.data, a.size);
     free(a.data), free(b.data), free(again.data);
     lc_film_free(back);
     lc_film_free(film);
@@ -403,6 +437,36 @@ START_TEST(variance_and_samples_of_others)
 }
 END_TEST
 
+/* Samples 0 10 20 30. */
+START_TEST(skewness_of_others)
+{
+    static const struct {
+        const char *channels;
+        int third;
+    } cases[] = {
+        {"B2 G2 R2 samples0 skewness.B2 skewness.G1 skewness.R2 variance.B2 variance.G2 variance.R2", 1},
+        {"B2 G2 R2 samples0 skewness.B2 skewness.R2 variance.B2 variance.G2 variance.R2", 0},
+        {"B2 G2 R2 samples0 skewness.B2 skewness.G2 skewness.R2 variance.B2 variance.R2", 0},
+        {"B2 G2 R2 skewness.B2 skewness.G2 skewness.R2 variance.B2 variance.G2 variance.R2", 0},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
+        struct spec spec = {cases[i].channels, 0, 0, 4, 1, 0, 1};
+        struct bytes bytes = build(&spec);
+        save(bytes.data, bytes.size);
+        free(bytes.data);
+        lc_film *film = read_film();
+        ck_assert_int_eq(film->has_third, cases[i].third);
+        for (int x = 0; x < 4; ++x)
+            for (int c = 0; c < 3; ++c) {
+                double n = 10 * x, m2 = value_at('v', x, 0) * n * (n - 1);
+                double m3 = x && cases[i].third ? n * value_at('s', x, 0) * pow(m2 / n, 1.5) : 0;
+                ck_assert_double_le(fabs(film->pixels[x].c[c].m3 - m3), 1e-12 * m3);
+            }
+        lc_film_free(film);
+    }
+}
+END_TEST
+
 static void ck_refused(const char *word)
 {
     lc_error err;
@@ -480,6 +544,24 @@ START_TEST(values_that_are_no_numbers)
     save(bytes.data, bytes.size);
     free(bytes.data);
     ck_refused("a variance of -1 at pixel 1,0");
+}
+END_TEST
+
+/* No n numbers have a skewness beyond sqrt(n). */
+START_TEST(skewness_that_cannot_be)
+{
+    struct spec spec = {"B2 G2 R2 samples0 skewness.B2 skewness.G2 skewness.R2 variance.B2 variance.G2 variance.R2",
+                        0, 0, 4, 1, 0, 1};
+    struct bytes bytes = build(&spec);
+    struct bytes patch = {bytes.data, bytes.size - 16 * 3 - 12}; /* R of pixel 1, which has 10 samples */
+    static const uint32_t bits[] = {0x404ccccd, 0xc04ccccd, 0x7fc00000, 0x7f800000}; /* 3.2, -3.2, NaN, infinity */
+    for (size_t i = 0; i < sizeof bits / sizeof bits[0]; ++i) {
+        struct bytes at = patch;
+        put32(&at, bits[i]);
+        save(bytes.data, bytes.size);
+        ck_refused(i == 1 ? "a skewness of -3.2 at pixel 1,0, expected at most 3.16228" : "at pixel 1,0, expected at most");
+    }
+    free(bytes.data);
 }
 END_TEST
 
@@ -626,6 +708,7 @@ Suite *lc_suite_exr(void)
     TCase *tc = tcase_create("films");
     tcase_add_checked_fixture(tc, make_target, remove_target);
     tcase_add_test(tc, a_film_there_and_back);
+    tcase_add_test(tc, third_moments_are_there_or_not);
     tcase_add_test(tc, rare_attributes_there_and_back);
     tcase_add_test(tc, same_film_same_bytes);
     tcase_add_test(tc, shards_merge_through_files);
@@ -635,9 +718,11 @@ Suite *lc_suite_exr(void)
     tcase_add_checked_fixture(tc, make_target, remove_target);
     tcase_add_loop_test(tc, images_of_others, 0, sizeof foreign / sizeof foreign[0]);
     tcase_add_test(tc, variance_and_samples_of_others);
+    tcase_add_test(tc, skewness_of_others);
     tcase_add_test(tc, what_is_no_such_image);
     tcase_add_loop_test(tc, absurd_sizes, 0, 7);
     tcase_add_test(tc, values_that_are_no_numbers);
+    tcase_add_test(tc, skewness_that_cannot_be);
     suite_add_tcase(suite, tc);
     tc = tcase_create("damage");
     tcase_set_timeout(tc, 30);
