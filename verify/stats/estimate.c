@@ -111,6 +111,24 @@ static lc_status check_film(const lc_film *film, int channel, double tolerance, 
     return LC_OK;
 }
 
+static lc_range range_of(const lc_film *film, int i)
+{
+    return i > 0 ? film->more[i - 1] : (lc_range){film->seed, film->arm, film->first, film->count};
+}
+
+/* Of any two ranges: a merged film has several. */
+static lc_status check_independent(const lc_film *a, const lc_film *b, lc_error *err)
+{
+    for (int i = 0; i <= a->more_count; ++i)
+        for (int j = 0; j <= b->more_count; ++j) {
+            lc_range x = range_of(a, i), y = range_of(b, j);
+            if (x.seed == y.seed && x.arm == y.arm && x.first < y.first + y.count && y.first < x.first + x.count)
+                return lc_fail(err, LC_BAD_INPUT, "%s: both films are of seed %llu, arm %u, expected independent streams",
+                               a->scene, (unsigned long long)x.seed, (unsigned)x.arm);
+        }
+    return LC_OK;
+}
+
 lc_status lc_field_two(lc_estimate *field, const lc_film *a, const lc_film *b, int channel, double tolerance,
                        lc_error *err)
 {
@@ -122,9 +140,9 @@ lc_status lc_field_two(lc_estimate *field, const lc_film *a, const lc_film *b, i
     if (a->width != b->width || a->height != b->height)
         return lc_fail(err, LC_BAD_INPUT, "films of %dx%d and %dx%d pixels, expected the same size", a->width,
                        a->height, b->width, b->height);
-    if (a->seed == b->seed && a->arm == b->arm && a->first < b->first + b->count && b->first < a->first + a->count)
-        return lc_fail(err, LC_BAD_INPUT, "%s: both films are of seed %llu, arm %u, expected independent streams",
-                       a->scene, (unsigned long long)a->seed, (unsigned)a->arm);
+    status = check_independent(a, b, err);
+    if (status)
+        return status;
     size_t count = (size_t)a->width * (size_t)a->height;
     for (size_t i = 0; i < count; ++i)
         field[i] = lc_estimate_two(&a->pixels[i], a->has_third, &b->pixels[i], b->has_third, channel, tolerance);

@@ -499,6 +499,9 @@ START_TEST(compare_knows_the_tails)
     ck_assert_ptr_nonnull(strstr(ran.out, "too few samples"));
     run(OK, "merge", a, c, "-o", sum);
     run(OK, "compare", sum, b, "--margin", "3%");
+    run_bad(BAD, "independent streams", "compare", sum, c); /* c is the second range of sum, */
+    run_bad(BAD, "independent streams", "compare", c, sum);
+    run_bad(BAD, "independent streams", "compare", sum, a); /* a the first */
     for (int i = 0; i < 2; ++i) { /* as they were written before there was skewness */
         ck_assert_int_eq(lc_exr_read(&film, i ? b : a, NULL), LC_OK);
         film->has_third = 0;
