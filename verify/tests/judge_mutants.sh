@@ -5,66 +5,12 @@
 # Prints mutant and the tests that killed it. Exit status 0: all are dead; 1: one lives, or could not be made.
 set -eu
 cd "$(dirname "$0")/../.."
+what=judge
 suites='judge_mutants stats_estimate stats_pyramid stats film'
-temporary=$(mktemp -d)
-copy=$temporary/tree
-mkdir "$copy"
-trap 'rm -rf "$temporary"' EXIT
-trap 'exit 1' HUP INT TERM
-tar -cf - --exclude=./.git --exclude='./build*' --exclude=./results . | tar -xf - -C "$copy"
-make="make -s -C $copy BUILD=build"
-$make -j2 build/tests
-
-# Runs the suites as they are now; prints the names of those that failed or ran out of time.
-failing() {
-    for suite in $suites; do
-        CK_RUN_SUITE=$suite CK_VERBOSITY=verbose CK_DEFAULT_TIMEOUT=60 "$copy/build/tests" 2>&1 || :
-    done | sed -n 's/^[^:]*:[0-9]*:[FE]:[^:]*:\([a-z0-9_]*\):.*/\1/p' | sort -u | tr '\n' ' '
-}
-before=$(failing)
-if [ -n "$before" ]; then
-    echo "judge_mutants: the right judge fails: $before" >&2
-    exit 1
-fi
-
-# The first four words, and how many more there are.
-shorten() {
-    if [ $# -gt 4 ]; then
-        echo "$1 $2 $3 $4 and $(($# - 4)) more"
-    else
-        echo "$*"
-    fi
-}
-
-made=0 alive=0
-wanted=" $* "
-
-# mutant NAME FILE SED-COMMAND: one wrong judge.
-mutant() {
-    case $wanted in
-    '  ' | *" $1 "*) ;;
-    *) return 0 ;;
-    esac
-    made=$((made + 1))
-    cp -p "$copy/$2" "$temporary/kept"
-    sed "$3" "$temporary/kept" >"$copy/$2"
-    if cmp -s "$temporary/kept" "$copy/$2"; then
-        killers='' verdict='NOT MADE: nothing matches'
-    elif ! $make build/tests >"$temporary/log" 2>&1; then
-        killers='' verdict='NOT MADE: it does not compile'
-    else
-        killers=$(failing)
-        verdict='ALIVE'
-    fi
-    [ -n "$killers" ] || alive=$((alive + 1))
-    printf '| %-34s | %s |\n' "$1" "$(shorten ${killers:-"$verdict"})"
-    cp "$temporary/kept" "$copy/$2" # not -p: newer than its object
-}
+. verify/tests/wrong_copy.sh
 
 estimate=verify/stats/estimate.c pyramid=verify/stats/pyramid.c budget=verify/stats/budget.c
 claim=verify/judge/claim.c render=src/core/render.c
-
-printf '| %-34s | killed by |\n|---|---|\n' mutant
 
 # p values.
 mutant p_inverted $estimate 's/lc_t_log_sf(side == LC_LOW ? -t : t, /lc_t_log_sf(side == LC_LOW ? t : -t, /'
@@ -123,5 +69,4 @@ mutant dependence_shown_by_anything verify/stats/variance.c 's/b->log_p <= 2 \* 
 mutant same_stream_twice $estimate 's/if (a->seed == b->seed && a->arm == b->arm/if (0 \&\& a->arm == b->arm/'
 mutant third_moment_not_merged src/core/film.c 's/m->m3 += o->m3 + square/m->m3 += square/'
 
-printf '\n%d wrong judges, %d alive\n' "$made" "$alive"
-[ "$alive" = 0 ] && [ "$made" != 0 ]
+sum_up
