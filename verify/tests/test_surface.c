@@ -151,7 +151,7 @@ START_TEST(emission_is_on_the_side_of_the_normal)
 }
 END_TEST
 
-/* A mirrored pose turns no surface inside out: in x, the front of a flat one stays where it was; in z, it goes along. */
+/* A mirrored pose turns nothing inside out: in x, the front of a flat shape stays where it was; in z, it goes along. */
 START_TEST(mirrored_shapes_keep_their_front)
 {
     static const lc_shape_kind kinds[] = {LC_RECTANGLE, LC_DISK, LC_CUBE};
