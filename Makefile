@@ -63,8 +63,8 @@ WORKER := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard src/core/*.c verify/grade/w
 PROOF := $(patsubst %.c,$(BUILD)/obj/%.o,$(filter-out %/calibrate.c %/power.c %/kill.c,$(wildcard verify/proof/*.c)))
 
 .PHONY: all check verify verify-table full-table specular-proof pictures povray-reference mitsuba-table renderer-study lint asan-check \
-        calibrate power seeds few-seeds proof judge-mutants mutants diagnosis-proof gradings bench student-kit gradescope-zip \
-        gradescope-check class needs fresh clean help
+        calibrate power seeds few-seeds proof judge-mutants host-mutants mutants diagnosis-proof gradings bench \
+        student-kit gradescope-zip gradescope-check class needs fresh clean help
 all: $(BUILD)/lightcheck $(BUILD)/lightcheck-worker $(BUILD)/obj/estimators/template.o ## build the program
 
 # A plug-in finds the functions of lightcheck.h in the program, and no others.
@@ -194,6 +194,9 @@ proof: all ## the full suite at margins of 0.05% max(1, c), overnight; goes on w
 
 judge-mutants: ## wrong judges, each of which the tests must catch
 	@sh verify/tests/judge_mutants.sh
+
+host-mutants: ## wrong hosts (BSDF, warps, sampler, film, camera, lights, rays), each of which the tests must catch
+	@sh verify/tests/host_mutants.sh
 
 bench: all ## how fast the tracer is on this machine: paths a second of one core
 	@sh verify/tests/bench.sh $(BUILD)/lightcheck

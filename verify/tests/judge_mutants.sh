@@ -5,73 +5,15 @@
 # Prints mutant and the tests that killed it. Exit status 0: all are dead; 1: one lives, or could not be made.
 set -eu
 cd "$(dirname "$0")/../.."
-judge='judge_mutants stats_estimate stats_pyramid stats film' shown='pictures/core exr/films verify/words' # SUITE or SUITE/CASE
-temporary=$(mktemp -d)
-copy=$temporary/tree
-mkdir "$copy"
-trap 'rm -rf "$temporary"' EXIT
-trap 'exit 1' HUP INT TERM
-tar -cf - --exclude=./.git --exclude='./build*' --exclude=./results . | tar -xf - -C "$copy"
-make="make -s -C $copy BUILD=build"
-$make -j2 build/tests
-
-# Runs the suites as they are now; prints the names of those that failed or ran out of time.
-failing() {
-    for suite in $suites; do
-        case $suite in
-        */*) only=CK_RUN_CASE=${suite#*/} ;;
-        *) only='' ;;
-        esac
-        env $only CK_RUN_SUITE="${suite%/*}" CK_VERBOSITY=verbose CK_DEFAULT_TIMEOUT=60 "$copy/build/tests" 2>&1 || :
-    done | sed -n 's/^[^:]*:[0-9]*:[FE]:[^:]*:\([a-z0-9_]*\):.*/\1/p' | sort -u | tr '\n' ' '
-}
+what=judge
+judge='judge_mutants stats_estimate stats_pyramid stats film' shown='pictures/core exr/films verify/words'
 suites="$judge $shown"
-before=$(failing)
+. verify/tests/wrong_copy.sh
 suites=$judge
-if [ -n "$before" ]; then
-    echo "judge_mutants: the right judge fails: $before" >&2
-    exit 1
-fi
-
-# The first four words, and how many more there are.
-shorten() {
-    if [ $# -gt 4 ]; then
-        echo "$1 $2 $3 $4 and $(($# - 4)) more"
-    else
-        echo "$*"
-    fi
-}
-
-made=0 alive=0
-wanted=" $* "
-
-# mutant NAME FILE SED-COMMAND: one wrong judge.
-mutant() {
-    case $wanted in
-    '  ' | *" $1 "*) ;;
-    *) return 0 ;;
-    esac
-    made=$((made + 1))
-    cp -p "$copy/$2" "$temporary/kept"
-    sed "$3" "$temporary/kept" >"$copy/$2"
-    if cmp -s "$temporary/kept" "$copy/$2"; then
-        killers='' verdict='NOT MADE: nothing matches'
-    elif ! $make build/tests >"$temporary/log" 2>&1; then
-        killers='' verdict='NOT MADE: it does not compile'
-    else
-        killers=$(failing)
-        verdict='ALIVE'
-    fi
-    [ -n "$killers" ] || alive=$((alive + 1))
-    printf '| %-34s | %s |\n' "$1" "$(shorten ${killers:-"$verdict"})"
-    cp "$temporary/kept" "$copy/$2" # not -p: newer than its object
-}
 
 estimate=verify/stats/estimate.c pyramid=verify/stats/pyramid.c budget=verify/stats/budget.c
 claim=verify/judge/claim.c render=src/core/render.c
 pictures=verify/report/pictures.c exr=src/io/exr.c
-
-printf '| %-34s | killed by |\n|---|---|\n' mutant
 
 # p values.
 mutant p_inverted $estimate 's/lc_t_log_sf(side == LC_LOW ? -t : t, /lc_t_log_sf(side == LC_LOW ? t : -t, /'
@@ -127,7 +69,8 @@ mutant bad_samples_skipped $render 's/film->bad += bad->count;/(void)0;/'
 mutant bad_samples_of_the_hub_skipped $claim 's/int is_bad = film->bad || (other && other->bad);/int is_bad = film->bad != 0;/'
 mutant dependence_not_asked $claim 's/dependent = dependent_channel(.*/dependent = -1;/'
 mutant dependence_shown_by_anything verify/stats/variance.c 's/b->log_p <= 2 \* log(alpha)/b->log_p <= 0.5 * log(alpha)/'
-mutant same_stream_twice $estimate 's/if (a->seed == b->seed && a->arm == b->arm/if (0 \&\& a->arm == b->arm/'
+mutant same_stream_twice $estimate 's/if (x.seed == y.seed \&\& /if (0 \&\& /'
+mutant first_stream_only $estimate 's/j <= b->more_count/j <= 0/'
 mutant third_moment_not_merged src/core/film.c 's/m->m3 += o->m3 + square/m->m3 += square/'
 
 # What a FAIL looks like, why a row stays undecided, and what of a film is kept in a file.
@@ -144,5 +87,4 @@ mutant file_forgets_the_third_moment $exr 's/m->m3 = skewness \* .*/m->m3 = 0;/'
 mutant file_without_skewness_has_none $exr 's/has_third = image->has_third;/has_third = 1;/'
 mutant sum_of_known_and_unknown_is_known src/core/film.c 's/if (!into->has_third || !from->has_third)/if (!into->has_third \&\& !from->has_third)/'
 
-printf '\n%d wrong judges, %d alive\n' "$made" "$alive"
-[ "$alive" = 0 ] && [ "$made" != 0 ]
+sum_up

@@ -126,6 +126,25 @@ START_TEST(near_and_far_clip)
 }
 END_TEST
 
+/* A pinhole's rays are spread over their pixel and nothing else: its own two numbers say where. */
+START_TEST(pinhole_fills_its_pixel)
+{
+    lc_camera_desc c = camera_of(90, LC_FOV_X);
+    lc_camera_frame frame;
+    lc_camera_prepare(&frame, &c, 8, 8);
+    for (uint32_t k = 0; k < 100; ++k) {
+        lc_sampler sampler, again;
+        lc_sampler_start(&sampler, 3, 1, 0, k);
+        again = sampler;
+        lc_ray ray = lc_camera_sample(&frame, &sampler, 6, 2);
+        double x = 6 + lc_next(&again), y = 2 + lc_next(&again);
+        ck_assert_uint_eq(sampler.dimension, 2);
+        ck_vec(lc_scale(1 / ray.d.z, ray.d), 1 - x / 4, 1 - y / 4, 1);
+        ck_vec(ray.o, 0, 0, 0);
+    }
+}
+END_TEST
+
 /* A lens of radius 0.5 focused at 3: rays start on the lens, one metre along the axis times the near clip further, uniform over its disk,
  * and all of one image point meet in the plane z = 3. */
 START_TEST(lens_gathers_in_its_plane)
@@ -189,6 +208,7 @@ Suite *lc_suite_camera(void)
     tcase_add_test(tc, default_lens);
     tcase_add_test(tc, posed_camera);
     tcase_add_test(tc, near_and_far_clip);
+    tcase_add_test(tc, pinhole_fills_its_pixel);
     tcase_add_test(tc, lens_gathers_in_its_plane);
     tcase_add_test(tc, impossible_lenses_are_refused);
     suite_add_tcase(suite, tc);

@@ -257,6 +257,41 @@ START_TEST(host_has_the_value_of_the_paper)
 }
 END_TEST
 
+/* The host's directions, weighed by its density, give the albedo of the cubature: six standard errors. */
+START_TEST(host_samples_by_its_density)
+{
+    enum { N = 4096 };
+    static const double alphas[] = {0.1, 0.3, 0.6, 1}, cosines[] = {1, 0.5, 0.2};
+    for (int i = 0; i < 12; ++i) {
+        lc_scene_desc desc;
+        double alpha = alphas[i / 3], cosine = cosines[i % 3], albedo, sum = 0, squares = 0;
+        lc_scene_desc_init(&desc);
+        int material = add_diffuse(&desc, 0);
+        desc.materials[material].side[0].glossy = lc_color(1, 1, 1);
+        desc.materials[material].side[0].alpha = alpha;
+        add_shape(&desc, LC_RECTANGLE, lc_affine_identity());
+        lc_scene *scene = build_scene(&desc);
+        lc_vec3 wo = lc_vec(sqrt(1 - cosine * cosine), 0, cosine);
+        lc_hit hit = see(scene, wo, lc_neg(wo));
+        for (uint32_t k = 0; k < N; ++k) {
+            lc_sampler sampler;
+            lc_scatter s;
+            lc_sampler_start(&sampler, 7, 1, 0, k);
+            if (!lc_bsdf_sample(scene, &hit, &sampler, &s))
+                continue;
+            double weight = s.value.g * fmax(0, s.wi.z) / s.pdf;
+            sum += weight / N;
+            squares += weight * weight / N;
+        }
+        ck_assert_int_eq(lc_ggx_albedo(&albedo, cosine, alpha, &err), LC_OK);
+        double sigma = sqrt(fmax(0, squares - sum * sum) / N);
+        ck_assert_msg(fabs(sum - albedo) < 6 * sigma + 1e-6, "alpha %g, cosine %g: %g +- %g, expected %g", alpha, cosine,
+                      sum, sigma, albedo);
+        lc_scene_free(scene);
+    }
+}
+END_TEST
+
 START_TEST(roughness_outside_its_range_is_refused)
 {
     static const double alphas[] = {0, -0.1, 1.01, NAN};
@@ -288,6 +323,7 @@ Suite *lc_suite_effects(void)
     tcase_add_test(tc, albedo_is_the_integral_of_the_value);
     tcase_add_test(tc, series_follow_the_albedo);
     tcase_add_test(tc, host_has_the_value_of_the_paper);
+    tcase_add_test(tc, host_samples_by_its_density);
     tcase_add_test(tc, roughness_outside_its_range_is_refused);
     suite_add_tcase(suite, tc);
     return suite;

@@ -40,6 +40,46 @@ static int same_hit(const lc_hit *a, const lc_hit *b)
                           lc_length(lc_sub(a->n, b->n)) < 1e-10 && fabs(a->distance - b->distance) < 1e-10));
 }
 
+static void ck_same_light(const lc_light_sample *a, const lc_light_sample *b)
+{
+    ck_assert(lc_length(lc_sub(a->p, b->p)) < 1e-10 && lc_length(lc_sub(a->n, b->n)) < 1e-10);
+    ck_assert(lc_length(lc_sub(a->wi, b->wi)) < 1e-10 && fabs(a->distance - b->distance) < 1e-10);
+    ck_assert_double_eq_tol(a->pdf_area, b->pdf_area, 1e-10);
+    ck_assert_double_eq_tol(a->pdf_solid, b->pdf_solid, 1e-8 * fmax(1, b->pdf_solid));
+    ck_assert_double_eq(a->radiance.g, b->radiance.g);
+}
+
+/* By solid angle and over the union, too: once the former looked for a lamp where it had been at time 0. */
+START_TEST(lights_are_sampled_where_they_are)
+{
+    uint64_t state = 78;
+    int solid = 0;
+    lc_scene *moving = make_flock(5, -1);
+    for (int k = 0; k < 4; ++k) {
+        double time = k / 4.0;
+        lc_scene *still = make_flock(5, time);
+        for (uint32_t i = 0; i < 50 * SHAPES; ++i) {
+            lc_hit hit = {.valid = 1, .n = {0, 0, 1}, .wo = {0, 0, 1}, .shape = -1, .part = -1, .time = time};
+            hit.p = lc_scale(next_within(&state, 5, 7), next_direction(&state)); /* outside all of them */
+            lc_light_sample a, b;
+            lc_sampler sampler_a, sampler_b;
+            lc_sampler_start(&sampler_a, 1, 2, 3, i);
+            sampler_b = sampler_a;
+            lc_light_sample_solid(moving, (int)i % SHAPES, &hit, &sampler_a, &a);
+            lc_light_sample_solid(still, (int)i % SHAPES, &hit, &sampler_b, &b);
+            ck_same_light(&a, &b);
+            solid += a.pdf_area == 0;
+            lc_light_sample_union(moving, &hit, &sampler_a, &a);
+            lc_light_sample_union(still, &hit, &sampler_b, &b);
+            ck_same_light(&a, &b);
+        }
+        lc_scene_free(still);
+    }
+    lc_scene_free(moving);
+    ck_assert_int_gt(solid, 600); /* spheres and rectangles */
+}
+END_TEST
+
 /* Along an edge one float decides, and the two scenes have different floats: a few rays in ten thousand. */
 START_TEST(each_moment_is_a_still_scene)
 {
@@ -270,6 +310,7 @@ Suite *lc_suite_motion(void)
     Suite *suite = suite_create("motion");
     TCase *tc = tcase_create("motion");
     tcase_set_timeout(tc, 30);
+    tcase_add_test(tc, lights_are_sampled_where_they_are);
     tcase_add_test(tc, each_moment_is_a_still_scene);
     tcase_add_test(tc, a_flying_room_leaks_nothing);
     tcase_add_test(tc, rays_have_a_time_where_something_moves);

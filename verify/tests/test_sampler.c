@@ -18,8 +18,13 @@ static lc_sampler start(uint64_t seed, uint32_t arm, uint32_t pixel, uint32_t sa
     return s;
 }
 
-/* The 32 bits behind a number. */
-static uint32_t bits(double u) { return (uint32_t)(u * 0x1p32); }
+/* The 32 bits behind a number, and nothing else. */
+static uint32_t bits(double u)
+{
+    uint32_t word = (uint32_t)(u * 0x1p32);
+    ck_assert_double_eq(u, word * 0x1p-32);
+    return word;
+}
 
 static void ck_block(lc_sampler *s, const uint32_t expected[4])
 {
@@ -38,6 +43,17 @@ START_TEST(known_answers_of_random123)
     s = start(0x299f31d0a4093822u, 0x03707344, 0x85a308d3, 0x13198a2e);
     lc_sampler_seek(&s, 0x243f6a88u << 2);
     ck_block(&s, pi);
+}
+END_TEST
+
+/* Its one chance in 2^32 is not waited for: the block is set by hand. */
+START_TEST(the_largest_number_is_below_one)
+{
+    lc_sampler s = start(0, 0, 0, 0);
+    lc_sampler_seek(&s, 0);
+    s.block[0] = UINT32_MAX;
+    double u = lc_next(&s);
+    ck_assert(u == 1 - 0x1p-32);
 }
 END_TEST
 
@@ -168,6 +184,7 @@ Suite *lc_suite_sampler(void)
     TCase *tc = tcase_create("core");
     tcase_set_timeout(tc, 30);
     tcase_add_test(tc, known_answers_of_random123);
+    tcase_add_test(tc, the_largest_number_is_below_one);
     tcase_add_test(tc, seek_gives_what_walking_gives);
     tcase_add_test(tc, numbers_are_in_zero_one_and_uniform);
     tcase_add_test(tc, streams_never_meet);

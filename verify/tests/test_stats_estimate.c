@@ -188,6 +188,12 @@ START_TEST(films_are_checked)
     b.arm = 2;
     ck_assert(lc_field_two(&e, &a, &b, 0, 0, &err) == LC_OK);
     check_close(e.difference, -0.1, 1e-13);
+    lc_range merged = {0, 1, 50, 100}; /* half of them a's */
+    b.more = &merged;
+    b.more_count = 1;
+    ck_assert(lc_field_two(&e, &a, &b, 0, 0, &err) == LC_BAD_INPUT);
+    merged.first = 100;
+    ck_assert(lc_field_two(&e, &a, &b, 0, 0, &err) == LC_OK);
     ck_assert(lc_field_two(&e, &a, &b, 0, NAN, &err) == LC_BAD_INPUT);
     ck_assert(lc_field_two(&e, &a, &b, 3, 0, &err) == LC_FAULT);
     static const double expected[] = {0.5, 9, 9};

@@ -151,6 +151,27 @@ START_TEST(emission_is_on_the_side_of_the_normal)
 }
 END_TEST
 
+/* A mirrored pose turns nothing inside out: in x, the front of a flat shape stays where it was; in z, it goes along. */
+START_TEST(mirrored_shapes_keep_their_front)
+{
+    static const lc_shape_kind kinds[] = {LC_RECTANGLE, LC_DISK, LC_CUBE};
+    for (int i = 0; i < 6; ++i) {
+        lc_scene_desc desc;
+        lc_shape_kind kind = kinds[i / 2];
+        int in_z = i % 2;
+        lc_scene_desc_init(&desc);
+        add_lamp(&desc, kind, in_z ? pose_scale(1, 1, -1) : pose_scale(-1, 1, 1), lc_color(7, 8, 9));
+        lc_scene *scene = build_scene(&desc);
+        lc_hit above = from_above(scene), below = from_below(scene);
+        ck_assert(above.valid && below.valid);
+        ck_assert_double_eq(above.n.z, kind == LC_CUBE ? 1 : in_z ? -1 : 1);
+        ck_assert_double_eq(below.n.z, kind == LC_CUBE ? -1 : above.n.z);
+        ck_assert(lc_emission(scene, &above).r == (above.n.z > 0 ? 7 : 0));
+        lc_scene_free(scene);
+    }
+}
+END_TEST
+
 START_TEST(a_miss_sees_the_sky)
 {
     lc_scene_desc desc;
@@ -272,6 +293,7 @@ Suite *lc_suite_surface(void)
     tcase_add_test(tc, glass_has_an_index_from_either_side);
     tcase_add_test(tc, lobes_of_a_blend_add_up);
     tcase_add_test(tc, emission_is_on_the_side_of_the_normal);
+    tcase_add_test(tc, mirrored_shapes_keep_their_front);
     tcase_add_test(tc, a_miss_sees_the_sky);
     tcase_add_test(tc, black_lamps_emit_nothing);
     tcase_add_test(tc, checkerboard_on_a_rectangle);

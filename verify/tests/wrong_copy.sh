@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Read by judge_mutants.sh and host_mutants.sh: programs that are wrong on purpose, each made by one substitution in a
+# copy of the tree, and some test must fail. Before: $what is the name of what is wrong, $suites the suites that matter.
+# Prints mutant and the tests that killed it.
+temporary=$(mktemp -d)
+copy=$temporary/tree
+mkdir "$copy"
+trap 'rm -rf "$temporary"' EXIT
+trap 'exit 1' HUP INT TERM
+tar -cf - --exclude=./.git --exclude='./build*' --exclude=./results . | tar -xf - -C "$copy"
+for made in obj flags texts.c tests lightcheck-worker lightcheck.syms; do # with their times: nothing is compiled twice
+    [ ! -e "build/$made" ] || tar -cf - "build/$made" | tar -xf - -C "$copy"
+done
+make="make -s -C $copy BUILD=build WERROR=" # a mutant may leave something unused
+$make -j2 build/tests
+
+# failing SUITE[/CASE] ...: runs them as they are now; prints the names of those tests that failed or ran out of time.
+failing() {
+    for suite in "$@"; do
+        case $suite in
+        */*) only=CK_RUN_CASE=${suite#*/} ;;
+        *) only='' ;;
+        esac
+        env $only CK_RUN_SUITE="${suite%/*}" CK_VERBOSITY=verbose CK_DEFAULT_TIMEOUT=60 "$copy/build/tests" 2>&1 || :
+    done | sed -n 's/^[^:]*:[0-9]*:[FE]:[^:]*:\([a-z0-9_]*\):.*/\1/p' | sort -u | tr '\n' ' '
+}
+before=$(failing $suites)
+if [ -n "$before" ]; then
+    echo "$0: the right $what fails: $before" >&2
+    exit 1
+fi
+
+# The first four words, and how many more there are.
+shorten() {
+    if [ $# -gt 4 ]; then
+        echo "$1 $2 $3 $4 and $(($# - 4)) more"
+    else
+        echo "$*"
+    fi
+}
+
+made=0 alive=0
+wanted=" $* "
+
+# mutant NAME FILE SED-COMMAND [SUITE ...]: one that is wrong; only these of the suites are asked, or all.
+mutant() {
+    case $wanted in
+    '  ' | *" $1 "*) ;;
+    *) return 0 ;;
+    esac
+    name=$1 file=$copy/$2 command=$3
+    shift 3
+    made=$((made + 1))
+    cp -p "$file" "$temporary/kept"
+    sed "$command" "$temporary/kept" >"$file"
+    if cmp -s "$temporary/kept" "$file"; then
+        killers='' verdict='NOT MADE: nothing matches'
+    elif ! $make build/tests >"$temporary/log" 2>&1; then
+        killers='' verdict='NOT MADE: it does not compile'
+    else
+        killers=$(failing ${*:-$suites})
+        verdict='ALIVE'
+    fi
+    [ -n "$killers" ] || alive=$((alive + 1))
+    printf '| %-34s | %s |\n' "$name" "$(shorten ${killers:-"$verdict"})"
+    cp "$temporary/kept" "$file" # not -p: newer than its object
+}
+
+# The last line of the table; exit status 0: all are dead.
+sum_up() {
+    printf '\n%d wrong %ss, %d alive\n' "$made" "$what" "$alive"
+    [ "$alive" = 0 ] && [ "$made" != 0 ]
+}
+
+printf '| %-34s | killed by |\n|---|---|\n' mutant
