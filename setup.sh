@@ -3,7 +3,7 @@
 # Installs what lightcheck needs and, when asked, builds and runs it. Asks nothing but a shell and apt.
 set -eu
 
-packages='make gcc libc6-dev libembree-dev libopenexr-dev libpng-dev libexpat1-dev libjansson-dev libgsl-dev
+packages='make gcc g++ libc6-dev libembree-dev libopenexr-dev libpng-dev libexpat1-dev libjansson-dev libgsl-dev
 librandom123-dev libseccomp-dev check povray'
 
 usage='usage: ./setup.sh                       install what is missing

@@ -310,7 +310,7 @@ static lc_status report(const char *path, int result, const char *messages, lc_e
         return lc_fail(err, LC_BAD_INPUT, "%s does not compile: the compiler was stopped after %d s", path,
                        MOST_SECONDS);
     case NO_COMPILER:
-        return lc_fail(err, LC_FAULT, "there is no program `%s`: install gcc", is_cpp(path) ? "c++" : "cc");
+        return lc_fail(err, LC_FAULT, is_cpp(path) ? "there is no program `c++`: install g++" : "there is no program `cc`: install gcc");
     case NO_FILE:
         return lc_fail(err, LC_BAD_INPUT, "%s: expected a regular file, and no link, of at most %d bytes", path,
                        MOST_SOURCE);
