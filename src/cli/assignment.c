@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "cli/commands.h"
+#include "io/scene_read.h"
 #include "verify/grade/public.h"
 #include "verify/grade/rehearse.h"
 #include "verify/grade/sentences.h"
@@ -12,11 +13,6 @@ typedef struct assignment_arguments {
     const char *seed;
     int threads;
 } assignment_arguments;
-
-static lc_status load_scene(lc_scene **out, const char *name, lc_error *err)
-{
-    return lc_cli_load_scene(out, name, NULL, err);
-}
 
 static void print_row(void *user, const lc_rehearsal_row *row)
 {
@@ -34,7 +30,7 @@ static lc_status check(const assignment_arguments *a, const char *name, lc_error
     lc_rehearsal r;
     lc_grade_options_init(&options);
     options.threads = a->threads;
-    options.load = load_scene;
+    options.load = lc_scene_open;
     lc_status status = assignment ? lc_assignment_read(assignment, name, err) : lc_fail(err, LC_FAULT, "out of memory for an assignment");
     if (status == LC_OK)
         status = lc_cli_read_seed(&options.seed, a->seed, err);

@@ -3,17 +3,13 @@
 #include <string.h>
 
 #include "cli/commands.h"
+#include "io/scene_read.h"
 #include "verify/report/diagnosis.h"
 
 typedef struct diagnose_arguments {
     const char *hint;
     int seed, threads;
 } diagnose_arguments;
-
-static lc_status load_scene(lc_scene **out, const char *name, lc_error *err)
-{
-    return lc_cli_load_scene(out, name, NULL, err);
-}
 
 static lc_status diagnose(void *user, const lc_strings *rest, lc_error *err)
 {
@@ -23,7 +19,7 @@ static lc_status diagnose(void *user, const lc_strings *rest, lc_error *err)
     const lc_estimator *estimator;
     lc_status status = lc_cli_find_estimator(&estimator, rest->items[0], err);
     if (status == LC_OK)
-        status = lc_diagnose(&diagnosis, estimator, &options, load_scene, err);
+        status = lc_diagnose(&diagnosis, estimator, &options, lc_scene_open, err);
     if (status != LC_OK)
         return status;
     lc_hint hint = strcmp(a->hint, "none") == 0       ? LC_HINT_NONE

@@ -5,6 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/grade_class.h"
+#include "io/scene_read.h"
 #include "verify/grade/compile.h"
 #include "verify/grade/formats.h"
 #include "verify/grade/grade.h"
@@ -18,11 +19,6 @@ typedef struct grade_arguments {
     int threads, no_jail, teacher, attempt;
     lc_cli_class class;
 } grade_arguments;
-
-static lc_status load_scene(lc_scene **out, const char *name, lc_error *err)
-{
-    return lc_cli_load_scene(out, name, NULL, err);
-}
 
 /* The result so far, where it was asked for. */
 static lc_status write_result(const grade_arguments *a, const lc_grade_result *result, lc_error *err)
@@ -121,7 +117,7 @@ static lc_status grade(void *user, const lc_strings *rest, lc_error *err)
     options.report = a->report;
     options.student = a->student;
     options.attempt = a->attempt;
-    options.load = load_scene;
+    options.load = lc_scene_open;
     lc_assignment *assignment = malloc(sizeof *assignment);
     lc_status status = assignment ? lc_assignment_read(assignment, a->assignment, err)
                                   : lc_fail(err, LC_FAULT, "out of memory for a grading");

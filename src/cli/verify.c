@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 
 #include "cli/commands.h"
+#include "io/scene_read.h"
 #include "io/outfile.h"
 #include "verify/grade/jail.h"
 #include "verify/grade/plugin.h"
@@ -17,11 +18,6 @@ typedef struct verify_arguments {
     double margin, budget, seconds;
     int threads, measure, jail, no_diagnose;
 } verify_arguments;
-
-static lc_status load_scene(lc_scene **out, const char *name, lc_error *err)
-{
-    return lc_cli_load_scene(out, name, NULL, err);
-}
 
 static void show_row(void *user, const lc_row *row, int done, int count)
 {
@@ -155,7 +151,7 @@ static lc_status explain(lc_report *report, const lc_verify_options *options, co
     lc_error why = {""};
     if (lc_report_status(report) != LC_WRONG || a->no_diagnose || !a->estimator || a->check || a->scene || a->shard)
         return LC_OK;
-    if (lc_diagnose(&diagnosis, options->estimator, &how, load_scene, &why) != LC_OK) {
+    if (lc_diagnose(&diagnosis, options->estimator, &how, lc_scene_open, &why) != LC_OK) {
         fprintf(stderr, "lightcheck verify: no diagnosis: %s\n", why.text);
         return LC_OK;
     }
@@ -208,9 +204,9 @@ static lc_status verify(void *user, const lc_strings *rest, lc_error *err)
     if (status != LC_OK)
         return status;
     if (a->measure)
-        return lc_measure_cells(load_scene, options.estimator, a->scene, print_line, NULL, err);
+        return lc_measure_cells(lc_scene_open, options.estimator, a->scene, print_line, NULL, err);
     open_album(&pictures, &options, a->report);
-    status = lc_verify(&report, &options, load_scene, err);
+    status = lc_verify(&report, &options, lc_scene_open, err);
     if (status == LC_OK && report.count == 0)
         status = report.note_count ? lc_fail(err, LC_BAD_INPUT, "nothing to verify: %s", report.notes[0].reason)
                                    : lc_fail(err, LC_BAD_INPUT, "nothing to verify: no check applies to what was selected");

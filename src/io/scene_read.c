@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "io/scene_read.h"
+#include "io/scene_path.h"
 #include "io/scene_read_material.h"
 
 /* ---- shapes ---- */
@@ -353,5 +354,23 @@ lc_status lc_scene_read(lc_scene_desc *out, const char *path, const lc_parameter
 cleanup:
     free(text);
     fclose(file);
+    return status;
+}
+
+lc_status lc_scene_describe(lc_scene_desc *out, const char *name, lc_error *err)
+{
+    char path[LC_PATH_SIZE];
+    lc_status status = lc_scene_locate(path, name, err);
+    return status == LC_OK ? lc_scene_read(out, path, NULL, 0, err) : status;
+}
+
+lc_status lc_scene_open(lc_scene **out, const char *name, lc_error *err)
+{
+    lc_scene_desc desc;
+    lc_status status = lc_scene_describe(&desc, name, err);
+    if (status != LC_OK)
+        return status;
+    status = lc_scene_build(out, &desc, err);
+    lc_scene_desc_release(&desc);
     return status;
 }

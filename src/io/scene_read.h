@@ -18,6 +18,10 @@ enum { LC_SCENE_MAX_BYTES = 16 << 20 }; /* of a scene's file */
 lc_status lc_scene_read(lc_scene_desc *out, const char *path, const lc_parameter *overrides, int override_count,
                         lc_error *err);
 
+/* The scene of that name, or of that path (scene_path.h): its description, or ready to render. */
+lc_status lc_scene_describe(lc_scene_desc *out, const char *name, lc_error *err);
+lc_status lc_scene_open(lc_scene **out, const char *name, lc_error *err);
+
 /* The same from `length` bytes of memory; `name` stands for the file in messages, and its stem names the scene. */
 lc_status lc_scene_read_memory(lc_scene_desc *out, const char *text, size_t length, const char *name,
                                const lc_parameter *overrides, int override_count, lc_error *err);

@@ -38,20 +38,6 @@ typedef struct killing {
 
 /* ---- scenes and claims ------------------------------------------------------------------------------------------------------ */
 
-static lc_status load_scene(lc_scene **out, const char *name, lc_error *err)
-{
-    char path[LC_PATH_SIZE];
-    lc_scene_desc desc;
-    lc_status status = lc_scene_locate(path, name, err);
-    if (status == LC_OK)
-        status = lc_scene_read(&desc, path, NULL, 0, err);
-    if (status != LC_OK)
-        return status;
-    status = lc_scene_build(out, &desc, err);
-    lc_scene_desc_release(&desc);
-    return status;
-}
-
 /* Rows share the budget as in `lightcheck verify -e NAME`. */
 static lc_status prepare(killing *k, lc_error *err)
 {
@@ -62,7 +48,7 @@ static lc_status prepare(killing *k, lc_error *err)
     for (int i = 0; lc_suite_scenes[i] && status == LC_OK; ++i) {
         if (k->scene_count == MOST_SCENES)
             return lc_fail(err, LC_FAULT, "more than %d scenes", MOST_SCENES);
-        status = lc_suite_scene(&k->scenes[k->scene_count], lc_suite_scenes[i], k->options.seed, load_scene, err);
+        status = lc_suite_scene(&k->scenes[k->scene_count], lc_suite_scenes[i], k->options.seed, lc_scene_open, err);
         if (status != LC_OK)
             return status;
         const lc_scene *scene = k->scenes[k->scene_count++];

@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "estimators/registry.h"
-#include "io/scene_path.h"
 #include "io/scene_read.h"
 #include "verify/judge/judge_c.h"
 #include "verify/proof/synthetic.h"
@@ -68,11 +67,8 @@ static const lc_estimator *find_estimator(const char *name)
 
 static lc_status load_scene(lc_scene **out, const char *name, lc_error *err)
 {
-    char path[LC_PATH_SIZE];
     lc_scene_desc desc;
-    lc_status status = lc_scene_locate(path, name, err);
-    if (status == LC_OK)
-        status = lc_scene_read(&desc, path, NULL, 0, err);
+    lc_status status = lc_scene_describe(&desc, name, err);
     if (status != LC_OK)
         return status;
     desc.width = desc.height = SIDE;

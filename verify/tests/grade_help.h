@@ -9,8 +9,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "io/scene_read.h"
 #include "verify/grade/grade.h"
-#include "verify/tests/load_help.h"
 
 /* Reads the text as an assignment, from a file of its own. */
 static inline lc_status read_text_as_assignment(lc_assignment *out, const char *text, lc_error *err)
@@ -47,7 +47,7 @@ static inline lc_grade_options options(void)
 {
     lc_grade_options o;
     lc_grade_options_init(&o);
-    o.load = load_scene;
+    o.load = lc_scene_open;
     return o;
 }
 

@@ -12,7 +12,6 @@
 #include <unistd.h>
 
 #include "estimators/registry.h"
-#include "io/scene_path.h"
 #include "io/scene_read.h"
 #include "verify/judge/judge.h"
 
@@ -127,9 +126,7 @@ END_TEST
 
 static void read_scene(lc_scene_desc *desc, const char *name)
 {
-    char path[LC_PATH_SIZE];
-    ck_assert_int_eq(lc_scene_locate(path, name, &err), LC_OK);
-    ck_assert_int_eq(lc_scene_read(desc, path, NULL, 0, &err), LC_OK);
+    ck_assert_int_eq(lc_scene_describe(desc, name, &err), LC_OK);
 }
 
 #define DESCRIBE "[ \"$1\" = --describe ] && exit 1\n"
@@ -172,20 +169,6 @@ END_TEST
 
 /* ---- verdicts ---------------------------------------------------------------------------------------------------- */
 
-static lc_status load(lc_scene **out, const char *name, lc_error *e)
-{
-    lc_scene_desc desc;
-    char path[LC_PATH_SIZE];
-    lc_status status = lc_scene_locate(path, name, e);
-    if (status == LC_OK)
-        status = lc_scene_read(&desc, path, NULL, 0, e);
-    if (status != LC_OK)
-        return status;
-    status = lc_scene_build(out, &desc, e);
-    lc_scene_desc_release(&desc);
-    return status;
-}
-
 /* light_direct and wrong versions of it, each a program. */
 static const struct {
     const char *scene, *estimator, *check;
@@ -218,7 +201,7 @@ START_TEST(right_adapters_pass_and_wrong_ones_fail)
     options.estimator = &a.estimator;
     options.check = verdicts[_i].check;
     options.scene = verdicts[_i].scene;
-    ck_assert_msg(lc_verify(&report, &options, load, &err) == LC_OK, "%s", err.text);
+    ck_assert_msg(lc_verify(&report, &options, lc_scene_open, &err) == LC_OK, "%s", err.text);
     ck_assert_int_ge(report.count, 1);
     ck_assert_msg(report.rows[0].verdict == verdicts[_i].verdict, "%s", report.rows[0].reason);
     lc_report_release(&report);
@@ -238,7 +221,7 @@ START_TEST(what_is_refused_is_noted)
     options.estimator = &a.estimator;
     options.check = "analytic";
     options.scene = "light_below";
-    ck_assert_msg(lc_verify(&report, &options, load, &err) == LC_OK, "%s", err.text);
+    ck_assert_msg(lc_verify(&report, &options, lc_scene_open, &err) == LC_OK, "%s", err.text);
     ck_assert_int_eq(report.count, 0);
     ck_assert_int_eq(report.note_count, 1);
     ck_assert_msg(strstr(report.notes[0].reason, "not a fine scene") != NULL, "%s", report.notes[0].reason);

@@ -6,15 +6,15 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "io/scene_read.h"
 #include "estimators/registry.h"
 #include "verify/report/diagnosis.h"
-#include "verify/tests/load_help.h"
 
 static void diagnose(lc_diagnosis *out, const lc_estimator *estimator)
 {
     lc_diagnose_options options = {1, 0};
     lc_error err = {""};
-    lc_status status = lc_diagnose(out, estimator, &options, load_scene, &err);
+    lc_status status = lc_diagnose(out, estimator, &options, lc_scene_open, &err);
     ck_assert_msg(status == LC_OK, "%s: %s", estimator->name, err.text);
 }
 

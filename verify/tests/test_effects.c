@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Closed forms and quadrature of glossy surfaces, lenses and moving shapes; the host against them, where one value says it. */
+#include "io/scene_read.h"
 #include "verify/analytic/effects.h"
 #include "verify/tests/tests.h"
 
@@ -7,7 +8,6 @@
 
 #include "estimators/registry.h"
 #include "verify/judge/judge.h"
-#include "verify/tests/load_help.h"
 #include "verify/tests/scene_help.h"
 
 static lc_error err;
@@ -153,7 +153,7 @@ static lc_status verdict_of(const lc_estimator *estimator, const char *scene, ch
     options.estimator = estimator;
     options.check = "effects";
     options.scene = scene;
-    ck_assert_msg(lc_verify(&report, &options, load_scene, &err) == LC_OK, "%s", err.text);
+    ck_assert_msg(lc_verify(&report, &options, lc_scene_open, &err) == LC_OK, "%s", err.text);
     ck_assert_int_eq(report.count, 1);
     lc_status status = lc_report_status(&report);
     snprintf(reason, 1024, "%s", report.rows[0].reason);

@@ -9,17 +9,14 @@
 #include <unistd.h>
 
 #include "estimators/registry.h"
-#include "io/scene_path.h"
 #include "io/scene_read.h"
 #include "verify/mutants/registry.h"
 #include "verify/tests/scene_help.h"
 
 static void load_desc(lc_scene_desc *desc, const char *name)
 {
-    char path[LC_PATH_SIZE];
     lc_error err = {""};
-    ck_assert_msg(lc_scene_locate(path, name, &err) == LC_OK, "%s", err.text);
-    ck_assert_msg(lc_scene_read(desc, path, NULL, 0, &err) == LC_OK, "%s", err.text);
+    ck_assert_msg(lc_scene_describe(desc, name, &err) == LC_OK, "%s", err.text);
 }
 
 static lc_scene *load(const char *name)

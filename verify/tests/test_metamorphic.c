@@ -15,11 +15,9 @@ enum { SIDE = 16 };
 
 static lc_scene_desc read_scene(const char *name)
 {
-    char path[LC_PATH_SIZE];
     lc_scene_desc desc;
     lc_error err = {""};
-    ck_assert_msg(lc_scene_locate(path, name, &err) == LC_OK, "%s", err.text);
-    ck_assert_msg(lc_scene_read(&desc, path, NULL, 0, &err) == LC_OK, "%s", err.text);
+    ck_assert_msg(lc_scene_describe(&desc, name, &err) == LC_OK, "%s", err.text);
     desc.width = desc.height = SIDE;
     return desc;
 }

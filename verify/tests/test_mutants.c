@@ -6,10 +6,10 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "io/scene_read.h"
 #include "estimators/registry.h"
 #include "verify/judge/judge.h"
 #include "verify/mutants/registry.h"
-#include "verify/tests/load_help.h"
 
 /* Which check catches it, and where. A scene blind to the bug would leave it UNDECIDED or, worse, let it PASS. */
 static const struct row {
@@ -166,7 +166,7 @@ static void run(lc_report *report, const lc_estimator *estimator, const struct r
     options.check = row->check;
     options.scene = row->scene;
     options.margin = margin;
-    lc_status status = lc_verify(report, &options, load_scene, &err);
+    lc_status status = lc_verify(report, &options, lc_scene_open, &err);
     ck_assert_msg(status == LC_OK, "%s, %s on %s: %s", estimator->name, row->check, row->scene, err.text);
 }
 

@@ -6,18 +6,15 @@
 #include <stdio.h>
 
 #include "estimators/registry.h"
-#include "io/scene_path.h"
 #include "io/scene_read.h"
 #include "verify/analytic/analytic.h"
 #include "verify/tests/scene_help.h"
 
 static lc_scene *load(const char *name)
 {
-    char path[LC_PATH_SIZE];
     lc_scene_desc desc;
     lc_error err = {""};
-    ck_assert_msg(lc_scene_locate(path, name, &err) == LC_OK, "%s", err.text);
-    ck_assert_msg(lc_scene_read(&desc, path, NULL, 0, &err) == LC_OK, "%s", err.text);
+    ck_assert_msg(lc_scene_describe(&desc, name, &err) == LC_OK, "%s", err.text);
     return build_scene(&desc);
 }
 

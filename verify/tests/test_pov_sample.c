@@ -11,7 +11,6 @@
 #include <unistd.h>
 
 #include "estimators/registry.h"
-#include "io/scene_path.h"
 #include "io/scene_read.h"
 #include "verify/renderers/adapter.h"
 
@@ -36,9 +35,7 @@ static int open_adapter(lc_adapter *adapter)
 
 static void read_scene(lc_scene_desc *desc, const char *name)
 {
-    char path[LC_PATH_SIZE];
-    ck_assert_int_eq(lc_scene_locate(path, name, &err), LC_OK);
-    ck_assert_int_eq(lc_scene_read(desc, path, NULL, 0, &err), LC_OK);
+    ck_assert_int_eq(lc_scene_describe(desc, name, &err), LC_OK);
     desc->width = desc->height = SIDE;
 }
 

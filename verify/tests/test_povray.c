@@ -427,11 +427,8 @@ static void (*alter)(lc_scene_desc *desc);
 
 static lc_status load_altered(lc_scene **out, const char *name, lc_error *e)
 {
-    char path[LC_PATH_SIZE];
     lc_scene_desc desc;
-    lc_status status = lc_scene_locate(path, name, e);
-    if (status == LC_OK)
-        status = lc_scene_read(&desc, path, NULL, 0, e);
+    lc_status status = lc_scene_describe(&desc, name, e);
     if (status != LC_OK)
         return status;
     if (alter && strcmp(name, altered_scene) == 0)

@@ -4,9 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "io/scene_read.h"
 #include "estimators/registry.h"
 #include "verify/judge/judge.h"
-#include "verify/tests/load_help.h"
 #include "verify/tests/tests.h"
 
 static const double PATHS_IN_TWO_SECONDS = 15e6;
@@ -61,7 +61,7 @@ static lc_row verdict_of(lc_radiance_fn *radiance, const char *check, const char
     options.estimator = &estimator;
     options.check = check;
     options.scene = "cornell";
-    ck_assert_msg(lc_verify(&report, &options, load_scene, &err) == LC_OK, "%s", err.text);
+    ck_assert_msg(lc_verify(&report, &options, lc_scene_open, &err) == LC_OK, "%s", err.text);
     ck_assert_int_eq(report.count, 1);
     ck_assert_msg((double)report.paths < 4 * PATHS_IN_TWO_SECONDS, "%g paths", (double)report.paths);
     lc_row row = report.rows[0];
