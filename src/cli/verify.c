@@ -30,16 +30,15 @@ static void show_row(void *user, const lc_row *row, int done, int count)
 /* Pictures of what fails, as long as they can be written; what stopped them is told when the verdicts are out. */
 typedef struct album {
     const char *folder;
-    int count;
     lc_status status;
     lc_error err;
 } album;
 
-static void keep_pictures(void *user, lc_row *row, const lc_exhibit *evidence)
+static void keep_pictures(void *user, lc_row *row, int number, const lc_exhibit *evidence)
 {
     album *pictures = user;
     if (pictures->status == LC_OK)
-        pictures->status = lc_report_pictures(row, pictures->folder, ++pictures->count, evidence, &pictures->err);
+        pictures->status = lc_report_pictures(row, pictures->folder, number, evidence, &pictures->err);
 }
 
 static void open_album(album *pictures, lc_verify_options *options, const char *folder)

@@ -90,6 +90,9 @@ lc_expect_fn lc_expect_inside;
 /* 0 where POV-Ray renders the scene for the check of that name; else 1, and why it does not, in words. */
 int lc_povray_excuse(lc_error *why, const lc_scene *scene);
 
+/* 1 for a relation that holds sample by sample, or would but for roulette: a few samples tell. The others are of the mean, in wide margins. */
+int lc_relation_is_sharp(const lc_claim *claim);
+
 /* Appends a claim of `check` with bounces 1 to 1; NULL without memory. */
 lc_claim *lc_claims_add(lc_claims *claims, const lc_check *check, const lc_scene *scene, const lc_estimator *estimator);
 void lc_claims_release(lc_claims *claims);

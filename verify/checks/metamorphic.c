@@ -298,7 +298,7 @@ static lc_status add(const lc_check *self, lc_claims *claims, const struct row *
     claim.slack = row->slack;
     /* Where there is one reflection, for who knows no more: of more, a path tracer has a scene of its own. */
     int is_apt = relation->sees_all || (row->bounces == 1) == (estimator->max_bounces == 1);
-    if (!is_apt && row->slack > 3)
+    if (!is_apt && !lc_relation_is_sharp(&claim))
         return LC_OK;
     claim.full_only = row->full_only || !is_apt;
     claim.tolerance = 1e-9;

@@ -51,6 +51,8 @@ void lc_claims_release(lc_claims *claims)
     memset(claims, 0, sizeof *claims);
 }
 
+int lc_relation_is_sharp(const lc_claim *claim) { return claim->relation && claim->slack <= 3; }
+
 const lc_scene *lc_claims_scene(const lc_claims *claims, const char *name)
 {
     for (int i = 0; i < claims->scene_count; ++i)

@@ -22,16 +22,6 @@ void lc_grade_options_init(lc_grade_options *options)
     options->program = "lightcheck";
 }
 
-lc_status lc_grade_draw_seed(uint64_t *seed, lc_error *err)
-{
-    FILE *f = fopen("/dev/urandom", "rb");
-    size_t read = f ? fread(seed, sizeof *seed, 1, f) : 0;
-    if (f)
-        fclose(f);
-    *seed >>= 16; /* short enough to be typed */
-    return read == 1 ? LC_OK : lc_fail(err, LC_FAULT, "/dev/urandom: cannot draw a seed");
-}
-
 /* ---- what a test says ------------------------------------------------------------------------------------------------ */
 
 void lc_test_settle(lc_test_result *out, double share)

@@ -10,7 +10,7 @@
 #include "verify/judge/judge.h"
 
 typedef struct lc_grade_options {
-    uint64_t seed;            /* of samples and of drawn scenes; draw it after hand-in (lc_grade_draw_seed) */
+    uint64_t seed;            /* of samples and of drawn scenes; draw it after hand-in */
     int threads;              /* 0: one a core */
     int is_open;              /* 1: no jail, the file runs in this process: for one's own code only */
     int is_teacher;           /* 1: nothing is withheld */
@@ -38,8 +38,5 @@ void lc_grade_options_init(lc_grade_options *options);
  * forks, so that the caller has no other threads running. Same file, assignment and seed: same points. */
 lc_status lc_grade_file(lc_grade_result *out, const lc_assignment *assignment, const char *path,
                         const lc_grade_options *options, lc_error *err);
-
-/* From the system's generator. */
-lc_status lc_grade_draw_seed(uint64_t *seed, lc_error *err);
 
 #endif

@@ -147,7 +147,7 @@ lc_status lc_grade_claims(lc_grading *g, const lc_job *job, lc_test_result *out,
         lc_row row;
         lc_seen seen;
         memset(&row, 0, sizeof row);
-        status = lc_session_judge(&row, session, claim, err);
+        status = lc_judge_claim(&row, session, claim, err);
         if (status != LC_OK)
             break;
         out->measured.paths += row.paths;

@@ -90,7 +90,7 @@ static lc_status judge(lc_grading *g, const lc_adapter *adapter, const lc_job *j
         const lc_claim *claim = &job->claims.items[i];
         if (claim->term_count || claim->decide || claim->paired) /* about single samples */
             continue;
-        lc_status judged = lc_session_judge(&row, session, claim, &why);
+        lc_status judged = lc_judge_claim(&row, session, claim, &why);
         if (judged != LC_OK) {
             say(t, 0, LC_JAIL_RTE, why.text);
             least = 0;

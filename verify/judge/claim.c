@@ -2,6 +2,7 @@
  *
  * Deciding one claim: grow the film(s) to the next look, judge the differences at every scale, stop when something is shown.
  */
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -100,8 +101,12 @@ void lc_row_conclude(lc_row *row, const lc_look *look, double alpha_pass)
 
 void lc_row_show(const lc_session *session, lc_row *row, lc_exhibit evidence)
 {
-    if (row->verdict == LC_ROW_FAIL && session->options->on_fail)
-        session->options->on_fail(session->options->user, row, &evidence);
+    static pthread_mutex_t alone = PTHREAD_MUTEX_INITIALIZER;
+    if (row->verdict != LC_ROW_FAIL || !session->options->on_fail)
+        return;
+    pthread_mutex_lock(&alone);
+    session->options->on_fail(session->options->user, row, session->number, &evidence);
+    pthread_mutex_unlock(&alone);
 }
 
 /* Against another film, or where that is NULL, against the expected values. */

@@ -55,8 +55,9 @@ typedef struct lc_verify_options {
     const lc_adapter *renderer;    /* another program whose estimator `estimator` is, or NULL */
     /* Called after each row, in the order of the report; may be NULL. */
     void (*on_row)(void *user, const lc_row *row, int done, int count);
-    /* Called with each row that failed and the images that show it, where there are any; may be NULL. For lc_report_pictures(). */
-    void (*on_fail)(void *user, lc_row *row, const lc_exhibit *evidence);
+    /* Called with each row that failed, its number in the table and the images that show it, where there are any; may be NULL. Never twice at
+     * the same time, but by any thread, and in any order. For lc_report_pictures(). */
+    void (*on_fail)(void *user, lc_row *row, int number, const lc_exhibit *evidence);
     void *user; /* of both */
     const char *program; /* for the reproducing lines */
 } lc_verify_options;
@@ -86,7 +87,7 @@ typedef struct lc_session lc_session;
 lc_status lc_session_open(lc_session **out, const lc_verify_options *options, int rows, lc_error *err);
 void lc_session_close(lc_session *session); /* NULL is fine */
 /* Fills a zeroed row, as lc_verify does. An estimator that gives no film fails its row. */
-lc_status lc_session_judge(lc_row *row, lc_session *session, const lc_claim *claim, lc_error *err);
+lc_status lc_judge_claim(lc_row *row, lc_session *session, const lc_claim *claim, lc_error *err);
 
 /* What a claim was judged by last; NULL: none of that. They are the session's. */
 typedef struct lc_seen {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  *
- * Private to verify/judge: a run in progress.
+ * Private to verify/judge, and to the programs of verify/proof that measure it: a run in progress.
  */
 #ifndef LC_JUDGE_C_H
 #define LC_JUDGE_C_H
@@ -32,6 +32,7 @@ struct lc_session {
     lc_stock_values *values;
     int film_count, value_count;
     int rows; /* among which the budget is split */
+    int number; /* of the claim that is judged, among those that were selected */
     double margin;
     uint64_t paths;
     struct lc_foreign *foreign; /* what is known of the renderer under test on this scene; NULL: nothing yet */
@@ -63,9 +64,7 @@ int lc_is_registered(const lc_estimator *estimator);
 /* Judges the claims, scenes at the same time, and appends their rows to the report in this order; each thread has a session of its own,
  * that begins as `model`, which has no films yet. */
 lc_status lc_judge_all(lc_report *report, const lc_session *model, const lc_claim *const *claims, int count, lc_error *err);
-/* Decides one claim and fills the row. */
-lc_status lc_judge_claim(lc_row *row, lc_session *session, const lc_claim *claim, lc_error *err);
-/* The same for a paired claim, in paired.c; room for the differences of one channel in `field`. */
+/* What lc_judge_claim does with a paired claim, in paired.c; room for the differences of one channel in `field`. */
 lc_status lc_judge_paired(lc_row *row, lc_session *session, const lc_claim *claim, lc_estimate *field, lc_error *err);
 
 /* Parts of both. The margin at noise c; a plan for the whole image only. */
@@ -101,7 +100,7 @@ void lc_row_conclude(lc_row *row, const lc_look *look, double alpha_pass);
 
 /* How hard a channel was: the hardest one is shown. */
 double lc_row_hardness(const lc_pyramid *p, double scale);
-/* Hands the images of a row that failed to whoever asked for them. */
+/* Hands the images of a row that failed to whoever asked for them, one row at a time. */
 void lc_row_show(const lc_session *session, lc_row *row, lc_exhibit evidence);
 /* Bad samples, of a film, in words. */
 void lc_row_bad(lc_row *row, const lc_film *film, uint64_t seed);

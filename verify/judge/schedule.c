@@ -23,7 +23,7 @@ typedef struct schedule {
     lc_report *report;
     const lc_session *model; /* what each thread's session begins as */
     slot *slots;
-    int count, next, told;
+    int next, told;
     int stop;  /* no claim from this one on: an earlier one had an error */
     int rows;  /* how many there will be */
     int threads, working;
@@ -93,6 +93,7 @@ static void *work(void *user)
     for (int first, end; take(s, &first, &end); lc_session_clear(&session))
         for (int i = first; i < end && (options.threads = threads_now(s, i)) > 0; ++i) {
             slot *at = &s->slots[i];
+            session.number = i + 1;
             at->status = lc_judge_claim(&at->row, &session, at->claim, &at->why);
             pthread_mutex_lock(&s->lock);
             at->is_done = 1;
@@ -119,7 +120,7 @@ static int workers_of(const schedule *s)
 lc_status lc_judge_all(lc_report *report, const lc_session *model, const lc_claim *const *claims, int count, lc_error *err)
 {
     long cores = model->options->threads > 0 ? model->options->threads : sysconf(_SC_NPROCESSORS_ONLN);
-    schedule s = {.report = report, .model = model, .count = count, .stop = count, .rows = count, .err = err,
+    schedule s = {.report = report, .model = model, .stop = count, .rows = count, .err = err,
                   .threads = cores < 1 ? 1 : cores > 256 ? 256 : (int)cores};
     pthread_t helpers[64];
     int workers = workers_of(&s), started = 0;

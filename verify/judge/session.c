@@ -184,11 +184,6 @@ void lc_session_close(lc_session *session)
     free(session);
 }
 
-lc_status lc_session_judge(lc_row *row, lc_session *session, const lc_claim *claim, lc_error *err)
-{
-    return lc_judge_claim(row, session, claim, err);
-}
-
 void lc_session_seen(lc_seen *out, const lc_session *session, const lc_claim *claim)
 {
     uint32_t arm = lc_session_arm(claim->estimator);

@@ -371,7 +371,7 @@ static const struct {
 int lc_suite_has(const lc_suite *suite, const lc_claim *claim)
 {
     int is_quick = strcmp(suite->name, "quick") == 0, varies = 0;
-    if (claim->relation && claim->slack <= 3) /* a few samples tell: cheap enough for all */
+    if (lc_relation_is_sharp(claim)) /* cheap enough for all */
         return !(is_quick && claim->full_only);
     for (size_t i = 0; i < sizeof chosen_rows / sizeof chosen_rows[0] && claim->estimator && !claim->exact; ++i) {
         if (strcmp(chosen_rows[i].estimator, claim->estimator->name) != 0)

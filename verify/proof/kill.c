@@ -69,7 +69,7 @@ static double cost_of(const lc_claim *claim)
     double pixels = (double)desc->width * desc->height, films = claim->other || claim->term_count ? 2 : 1;
     if (claim->decide)
         return 4e6;
-    return pixels * films * claim->max_bounces * (claim->exact || claim->slack <= 1 ? claim->term_count ? 65 : 64 : 256);
+    return pixels * films * claim->max_bounces * (claim->exact || lc_relation_is_sharp(claim) ? LC_BLOCK : LC_LEAST_SAMPLES);
 }
 
 static int by_cost(const void *a, const void *b)

@@ -38,12 +38,6 @@ static void put(lc_pixel *pixel, uint64_t n, int channel, double mean, double va
     pixel->c[channel].m2 = n > 1 ? variance * count * (count - 1) : 0;
 }
 
-/* The variance of a pixel's mean; 0 where it is not known. */
-static double variance_of(const lc_pixel *pixel, int channel)
-{
-    return pixel->n > 1 ? pixel->c[channel].m2 / ((double)pixel->n * ((double)pixel->n - 1)) : 0;
-}
-
 /* What is expected and what differs, pixel by pixel. */
 static void fill(lc_film *expected, lc_film *difference, const lc_exhibit *e)
 {
@@ -53,18 +47,18 @@ static void fill(lc_film *expected, lc_film *difference, const lc_exhibit *e)
             double mean = is->c[c].mean, variance = 0;
             if (e->difference) {
                 const lc_pixel *d = &e->difference->pixels[i];
-                put(&difference->pixels[i], d->n, c, d->c[c].mean, variance_of(d, c));
+                put(&difference->pixels[i], d->n, c, d->c[c].mean, lc_pixel_variance(d, c));
                 put(&expected->pixels[i], is->n, c, mean - d->c[c].mean, 0);
                 continue;
             }
             double should = e->other ? e->other->pixels[i].c[c].mean : e->expected[3 * i + (size_t)c];
             if (e->other)
-                variance = variance_of(&e->other->pixels[i], c);
+                variance = lc_pixel_variance(&e->other->pixels[i], c);
             put(&expected->pixels[i], e->other ? e->other->pixels[i].n : is->n, c, should, variance);
             if (e->skip && e->skip[i])
                 put(&difference->pixels[i], is->n, c, 0, 0);
             else
-                put(&difference->pixels[i], is->n, c, mean - should, variance + variance_of(is, c));
+                put(&difference->pixels[i], is->n, c, mean - should, variance + lc_pixel_variance(is, c));
         }
 }
 
@@ -95,7 +89,7 @@ static lc_status write_signed(const char *path, const lc_film *difference, int c
     size_t known = 0;
     for (size_t i = 0; i < count; ++i) {
         double d = fabs(difference->pixels[i].c[channel].mean);
-        variance += variance_of(&difference->pixels[i], channel) / (double)count;
+        variance += lc_pixel_variance(&difference->pixels[i], channel) / (double)count;
         if (isfinite(d))
             sizes[known++] = d;
     }
@@ -156,39 +150,41 @@ static void name_files(char *base, size_t size, const char *folder, int number, 
     snprintf(base, size, "%s/%s", folder, name);
 }
 
-static lc_status write_all(const char *base, const lc_film *is, const lc_film *expected, const lc_film *difference,
-                           int channel, lc_error *err)
-{
-    const lc_film *const films[] = {is, expected, difference};
-    double exposure = exposure_of(expected, is);
-    lc_status status = LC_OK;
-    for (int k = 0; lc_picture_kinds[k].name && status == LC_OK; ++k) {
-        char path[LC_MOST_PATH + 32];
-        snprintf(path, sizeof path, "%s%s", base, lc_picture_kinds[k].ending);
-        status = k < 3 ? lc_exr_write(path, films[k], err)
-                 : k < 5 ? write_enlarged(path, films[k - 3], exposure, err)
-                         : write_signed(path, difference, channel, err);
-    }
-    return status;
-}
-
-lc_status lc_report_pictures(lc_row *row, const char *folder, int number, const lc_exhibit *evidence, lc_error *err)
+lc_status lc_pictures_write(const char *const paths[LC_PICTURES], const lc_exhibit *evidence, int channel, lc_error *err)
 {
     lc_film *expected = NULL, *difference = NULL;
-    row->pictures[0] = 0;
-    if (strlen(folder) > LC_MOST_PATH / 2)
-        return lc_fail(err, LC_FAULT, "%.100s...: too long a name for pictures", folder);
     lc_status status = create(&expected, evidence->is, err);
     if (status == LC_OK)
         status = create(&difference, evidence->is, err);
     if (status == LC_OK) {
         fill(expected, difference, evidence);
-        name_files(row->pictures, sizeof row->pictures, folder, number, row);
-        status = write_all(row->pictures, evidence->is, expected, difference, row->channel, err);
+        const lc_film *const films[] = {evidence->is, expected, difference};
+        double exposure = exposure_of(expected, evidence->is);
+        for (int k = 0; k < LC_PICTURES && status == LC_OK; ++k)
+            if (paths[k])
+                status = k < 3   ? lc_exr_write(paths[k], films[k], err)
+                         : k < 5 ? write_enlarged(paths[k], films[k - 3], exposure, err)
+                                 : write_signed(paths[k], difference, channel, err);
     }
-    if (status != LC_OK)
-        row->pictures[0] = 0;
     lc_film_free(expected);
     lc_film_free(difference);
+    return status;
+}
+
+lc_status lc_report_pictures(lc_row *row, const char *folder, int number, const lc_exhibit *evidence, lc_error *err)
+{
+    char text[LC_PICTURES][LC_MOST_PATH + 32];
+    const char *paths[LC_PICTURES];
+    row->pictures[0] = 0;
+    if (strlen(folder) > LC_MOST_PATH / 2)
+        return lc_fail(err, LC_FAULT, "%.100s...: too long a name for pictures", folder);
+    name_files(row->pictures, sizeof row->pictures, folder, number, row);
+    for (int k = 0; k < LC_PICTURES; ++k) {
+        snprintf(text[k], sizeof text[k], "%s%s", row->pictures, lc_picture_kinds[k].ending);
+        paths[k] = text[k];
+    }
+    lc_status status = lc_pictures_write(paths, evidence, row->channel, err);
+    if (status != LC_OK)
+        row->pictures[0] = 0;
     return status;
 }

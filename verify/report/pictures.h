@@ -22,6 +22,12 @@ typedef struct lc_picture_kind {
 } lc_picture_kind;
 extern const lc_picture_kind lc_picture_kinds[];
 
+enum { LC_PICTURES = 6 }; /* of an exhibit: is, expected and difference as EXR, then as PNG */
+
+/* Writes those of the pictures whose path is not NULL, each whole or not at all; the difference is that of `channel` in the PNG. LC_FAULT on I/O
+ * or without memory. */
+lc_status lc_pictures_write(const char *const paths[LC_PICTURES], const lc_exhibit *evidence, int channel, lc_error *err);
+
 /* Writes the pictures of a row into `folder`, which is there, as NUMBER_CHECK_SCENE_ESTIMATOR_K..., and says so in row->pictures:
  *     .is.exr .expected.exr .difference.exr   linear, with the variance of each pixel's mean
  *     .is.png .expected.png                   to look at, equally exposed

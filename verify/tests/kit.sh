@@ -43,12 +43,12 @@ rm "$kit/hint.txt"
 works() {
     expected=$1 status=0
     shift
-    (cd "$folder/work" && env -i PATH=/usr/local/bin:/usr/bin:/bin "$kit/build/lightcheck" "$@") >"$folder/out" 2>&1 || status=$?
+    (cd "$folder/course" && env -i PATH=/usr/local/bin:/usr/bin:/bin "$kit/build/lightcheck" "$@") >"$folder/out" 2>&1 || status=$?
     [ "$status" = "$expected" ] || wrong "lightcheck $*: exit status $status: $(tail -n 2 "$folder/out")"
 }
-mkdir "$folder/work"
-cp verify/tests/handins/all_lights.c "$folder/work"
-sed 's/weight \*= fmax/weight = fmax/' "$folder/work/all_lights.c" >"$folder/work/no_cosine.c"
+mkdir "$folder/course"
+cp verify/tests/handins/all_lights.c "$folder/course"
+sed 's/weight \*= fmax/weight = fmax/' "$folder/course/all_lights.c" >"$folder/course/no_cosine.c"
 works 0 new mine
 works 0 render cornell -e mine.c -s 1 --size 8x8 -o mine.png
 works 0 verify -e all_lights.c -c analytic --scene plane_disk

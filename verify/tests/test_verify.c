@@ -306,7 +306,7 @@ static double planned_of_relation(const lc_suite *suite, const lc_claim *claim)
 {
     const lc_scene_desc *desc = lc_scene_description(claim->scene);
     double pixels = (double)desc->width * desc->height, arms = 1 + claim->term_count + (claim->paired ? 1 : 0);
-    if (claim->paired && claim->slack <= 3)
+    if (claim->paired && lc_relation_is_sharp(claim))
         return arms * LC_BLOCK * pixels;
     return arms * fmax(LC_LEAST_SAMPLES * pixels,
                        (double)lc_planned_samples(1.5, 1.5 * margin_of(suite, claim, 1), 1));
