@@ -41,22 +41,6 @@ static lc_status show_test(void *user, const lc_grade_result *result, lc_error *
     return a->out ? write_result(a, result, err) : LC_OK;
 }
 
-/* What was handed in without a file that could be graded. */
-static void refuse(lc_grade_result *result, const lc_assignment *assignment, const lc_grade_options *options, const lc_handin *handin)
-{
-    memset(result, 0, sizeof *result);
-    snprintf(result->assignment, sizeof result->assignment, "%s", assignment->name);
-    snprintf(result->title, sizeof result->title, "%s", assignment->title);
-    snprintf(result->file, sizeof result->file, "%.1000s", handin->name);
-    snprintf(result->jail, sizeof result->jail, "none");
-    snprintf(result->message, sizeof result->message, "%s", handin->why);
-    result->seed = options->seed;
-    result->attempt = options->attempt;
-    result->is_ungradable = 1;
-    result->code = LC_JAIL_CE;
-    result->most_points = lc_assignment_points(assignment);
-}
-
 static lc_status grade_one(const grade_arguments *a, const lc_assignment *assignment, const char *word, lc_grade_options *options,
                            lc_error *err)
 {
@@ -82,7 +66,7 @@ static lc_status grade_one(const grade_arguments *a, const lc_assignment *assign
         status = lc_cli_find_estimator(&options->estimator, word, err);
     }
     if (status == LC_OK && !file)
-        refuse(result, assignment, options, &handins.items[0]);
+        lc_grade_refused(result, assignment, handins.items[0].name, options, 0, handins.items[0].why);
     else if (status == LC_OK)
         status = lc_grade_file(result, assignment, file, options, err);
     if (status == LC_OK && a->format)

@@ -61,22 +61,14 @@ static lc_status on_test(void *user, const lc_grade_result *result, lc_error *er
 /* A result of something that was not graded: our fault, or not gradable. */
 static lc_status save_other(const lc_class *c, const lc_class_row *row, int is_fault, const char *why, lc_error *err)
 {
-    const lc_assignment *a = c->options->assignment;
+    lc_grade_options options = c->options->grade;
     lc_grade_result *r = calloc(1, sizeof *r);
     if (!r)
         return no_memory(err);
-    snprintf(r->assignment, sizeof r->assignment, "%s", a->name);
-    snprintf(r->title, sizeof r->title, "%s", a->title);
-    snprintf(r->file, sizeof r->file, "%s", row->handin->path ? row->handin->path : row->handin->name);
-    snprintf(r->student, sizeof r->student, "%s", row->student ? row->student->id : "");
-    snprintf(r->jail, sizeof r->jail, "none");
-    snprintf(r->message, sizeof r->message, "%s", why);
-    r->seed = c->seed;
-    r->attempt = 1;
-    r->is_fault = is_fault;
-    r->is_ungradable = !is_fault;
-    r->code = is_fault ? LC_JAIL_IE : LC_JAIL_CE;
-    r->most_points = lc_assignment_points(a);
+    options.seed = c->seed;
+    options.attempt = 1;
+    options.student = row->student ? row->student->id : NULL;
+    lc_grade_refused(r, c->options->assignment, row->handin->path ? row->handin->path : row->handin->name, &options, is_fault, why);
     lc_status status = save(c, row, r, err);
     if (status == LC_OK)
         status = save_feedback(c, row, r, err);

@@ -22,78 +22,6 @@ void lc_grade_options_init(lc_grade_options *options)
     options->program = "lightcheck";
 }
 
-/* ---- what a test says ------------------------------------------------------------------------------------------------ */
-
-void lc_test_settle(lc_test_result *out, double share)
-{
-    out->points = share * out->most_points;
-    out->code = share >= 1 ? LC_JAIL_AC : LC_JAIL_WA;
-    out->status = share >= 1                                                ? LC_TEST_PASSED
-                  : share > 0 && !(out->measured.low > 1 || out->measured.high < 1) ? LC_TEST_PARTIAL
-                                                                            : LC_TEST_FAILED;
-}
-
-void lc_test_say(lc_test_result *out, const lc_grading *g, const char *id, const lc_words *words)
-{
-    const char *shown = out->status == LC_TEST_PASSED    ? "hidden_passed"
-                        : out->status == LC_TEST_PARTIAL ? "hidden_partial"
-                        : out->status == LC_TEST_FAILED  ? "hidden_failed"
-                                                         : NULL;
-    snprintf(out->sentence_id, sizeof out->sentence_id, "%s", id);
-    lc_say(out->sentence, sizeof out->sentence, g->sentences, id, words);
-    lc_say(out->shown, sizeof out->shown, g->sentences, lc_test_is_open(out) || !shown ? id : shown, words);
-}
-
-void lc_test_bad(lc_test_result *out, const lc_grading *g, const char *scene, const lc_film *film)
-{
-    lc_words words = {.count = 0};
-    lc_measured *m = &out->measured;
-    m->bad_x = film->bad_x;
-    m->bad_y = film->bad_y;
-    m->bad_sample = film->bad_sample;
-    m->bad_count = film->bad;
-    memcpy(m->bad_value, film->bad_value, sizeof m->bad_value);
-    lc_words_set(&words, "scene", "%s", scene);
-    lc_words_set(&words, "count", "%llu", (unsigned long long)film->bad);
-    lc_words_set(&words, "red", "%g", film->bad_value[0]);
-    lc_words_set(&words, "green", "%g", film->bad_value[1]);
-    lc_words_set(&words, "blue", "%g", film->bad_value[2]);
-    lc_words_set(&words, "x", "%d", film->bad_x);
-    lc_words_set(&words, "y", "%d", film->bad_y);
-    lc_words_set(&words, "sample", "%llu", (unsigned long long)film->bad_sample);
-    lc_words_set(&words, "seed", "%llu", (unsigned long long)film->seed);
-    lc_test_settle(out, 0);
-    lc_test_say(out, g, "bad_sample", &words);
-    snprintf(out->reproduce, sizeof out->reproduce,
-             "%s sample %s -e %.250s --pixel %d,%d --index %llu --seed %llu --arm %lu --bounces %d", g->options->program, scene,
-             g->path, film->bad_x, film->bad_y, (unsigned long long)film->bad_sample, (unsigned long long)film->seed,
-             (unsigned long)film->arm, film->max_bounces);
-}
-
-/* It ended by `code`. */
-static void end_test(lc_test_result *out, const lc_grading *g, const char *scene, lc_jail_code code, const char *reason)
-{
-    lc_words words = {.count = 0};
-    char id[32];
-    lc_test_settle(out, 0);
-    out->code = code;
-    if (code == LC_JAIL_IE)
-        out->status = LC_TEST_FAULT;
-    lc_words_set(&words, "scene", "%s", scene);
-    lc_words_set(&words, "reason", "%.190s", reason);
-    snprintf(id, sizeof id, "ended_%s", lc_jail_code_name(code));
-    lc_test_say(out, g, code == LC_JAIL_IE ? "fault" : id, &words);
-}
-
-int lc_test_ended(lc_test_result *out, const lc_grading *g, const char *scene)
-{
-    const lc_jail_verdict *last = g->jail ? lc_jail_last(g->jail) : NULL;
-    if (!last || last->code == LC_JAIL_AC)
-        return 0;
-    end_test(out, g, scene, last->code, last->text);
-    return 1;
-}
-
 /* ---- the kinds that need no judge -------------------------------------------------------------------------------------- */
 
 static void list_missing(lc_words *words, const lc_grading *g)
@@ -199,7 +127,7 @@ static lc_status judge_test(lc_grading *g, int i, lc_error *err)
         snprintf(g->result->jail, sizeof g->result->jail, "%s", lc_jail_level(g->jail));
     }
     if (status == LC_FAULT && g->jail && lc_jail_last(g->jail)->code == LC_JAIL_IE) { /* the result says so */
-        end_test(out, g, job->test->name, LC_JAIL_IE, why.text);
+        lc_test_end(out, g, job->test->name, LC_JAIL_IE, why.text);
         return LC_OK;
     }
     return status == LC_OK ? LC_OK : lc_fail(err, status, "%s: %s", job->test->name, why.text);
@@ -291,20 +219,37 @@ static void set_labels(lc_grading *g)
         lc_say(r->labels[i], sizeof r->labels[i], g->sentences, ids[i], &words);
 }
 
+/* Whose, of what, by which seed. */
+static void start(lc_grade_result *r, const lc_assignment *a, const char *file, const lc_grade_options *o)
+{
+    memset(r, 0, sizeof *r);
+    snprintf(r->assignment, sizeof r->assignment, "%s", a->name);
+    snprintf(r->title, sizeof r->title, "%s", a->title);
+    snprintf(r->file, sizeof r->file, "%s", file);
+    snprintf(r->student, sizeof r->student, "%s", o->student ? o->student : "");
+    snprintf(r->jail, sizeof r->jail, "none");
+    r->seed = o->seed;
+    r->attempt = o->attempt > 0 ? o->attempt : 1;
+}
+
+void lc_grade_refused(lc_grade_result *out, const lc_assignment *assignment, const char *file,
+                      const lc_grade_options *options, int is_fault, const char *why)
+{
+    start(out, assignment, file, options);
+    snprintf(out->message, sizeof out->message, "%s", why);
+    out->is_fault = is_fault;
+    out->is_ungradable = !is_fault;
+    out->code = is_fault ? LC_JAIL_IE : LC_JAIL_CE;
+    out->most_points = lc_assignment_points(assignment);
+}
+
 static lc_status start_result(lc_grading *g, lc_error *err)
 {
     const lc_assignment *a = g->assignment;
     const lc_grade_options *o = g->options;
     lc_grade_result *r = g->result;
     time_t is_now = o->now ? o->now : time(NULL);
-    memset(r, 0, sizeof *r);
-    snprintf(r->assignment, sizeof r->assignment, "%s", a->name);
-    snprintf(r->title, sizeof r->title, "%s", a->title);
-    snprintf(r->file, sizeof r->file, "%s", g->path);
-    snprintf(r->student, sizeof r->student, "%s", o->student ? o->student : "");
-    snprintf(r->jail, sizeof r->jail, "none");
-    r->seed = o->seed;
-    r->attempt = o->attempt > 0 ? o->attempt : 1;
+    start(r, a, g->path, o);
     for (int i = 0; i < a->test_count; ++i) {
         if (o->only && strcmp(o->only, a->tests[i].name) != 0)
             continue;
@@ -332,7 +277,7 @@ static void refuse(lc_grading *g, const lc_jail_verdict *why)
     r->is_fault = why->code == LC_JAIL_IE;
     snprintf(r->message, sizeof r->message, "%s", why->text);
     for (int i = 0; i < r->test_count && why->code != LC_JAIL_CE; ++i)
-        end_test(&r->tests[i], g, r->tests[i].name, why->code, why->text);
+        lc_test_end(&r->tests[i], g, r->tests[i].name, why->code, why->text);
     r->done = r->test_count;
 }
 

@@ -39,4 +39,9 @@ void lc_grade_options_init(lc_grade_options *options);
 lc_status lc_grade_file(lc_grade_result *out, const lc_assignment *assignment, const char *path,
                         const lc_grade_options *options, lc_error *err);
 
+/* The result of what was not graded: by a fault of ours, or because there is nothing that could be. Seed, attempt and student are those of
+ * the options. */
+void lc_grade_refused(lc_grade_result *out, const lc_assignment *assignment, const char *file,
+                      const lc_grade_options *options, int is_fault, const char *why);
+
 #endif

@@ -57,6 +57,8 @@ void lc_test_settle(lc_test_result *out, double share);
 void lc_test_say(lc_test_result *out, const lc_grading *g, const char *id, const lc_words *words);
 /* Of a film with bad samples: sentence, numbers and the line that replays the first. `scene` as on a command line. */
 void lc_test_bad(lc_test_result *out, const lc_grading *g, const char *scene, const lc_film *film);
+/* Of a file that ended by `code`: its own fault, or with IE ours. */
+void lc_test_end(lc_test_result *out, const lc_grading *g, const char *scene, lc_jail_code code, const char *reason);
 /* 1, and everything filled in, when the last film of the jail did not end well. */
 int lc_test_ended(lc_test_result *out, const lc_grading *g, const char *scene);
 
