@@ -18,9 +18,10 @@ temporary=$(mktemp -d)
 trap 'rm -rf "$temporary"' EXIT
 trap 'exit 1' HUP INT TERM
 reader=$temporary/reader
-mkdir -p "$reader/build"
+mkdir -p "$reader/build" "$reader/verify"
 ln -s "$program" "$reader/build/lightcheck"
 ln -s "$project/scenes" "$project/estimators" "$project/results" "$reader"
+ln -s "$project/verify/assignments" "$reader/verify" # a program in build/asan does not find them beside itself
 
 failed=0
 wrong() {
