@@ -137,7 +137,7 @@ pictures: all ## the pictures of the README: results/cornell_*.png (about three 
 	    exit; done
 
 check: all $(BUILD)/tests ## run the unit and command-line tests, and the examples of the documents
-	LIGHTCHECK=$(BUILD)/lightcheck $(BUILD)/tests
+	@LIGHTCHECK=$(BUILD)/lightcheck sh verify/tests/run.sh $(BUILD)/tests
 	@sh verify/tests/docs_selftest.sh $(BUILD)/lightcheck
 	@sh verify/tests/docs.sh $(BUILD)/lightcheck
 	@sh verify/tests/kit.sh $(BUILD)/lightcheck

@@ -66,7 +66,8 @@ static double now(void)
 static lc_status wait_for(pid_t child, const lc_program *p, int *exit_status, lc_error *err)
 {
     double deadline = now() + p->seconds;
-    for (;;) {
+    /* A small renderer takes some milliseconds and is run hundreds of times. */
+    for (long nanoseconds = 200000;; nanoseconds += nanoseconds < 5000000 ? nanoseconds / 4 : 0) {
         pid_t done = waitpid(child, exit_status, WNOHANG);
         if (done == child) {
             kill(-child, SIGKILL); /* whatever it left behind */
@@ -81,7 +82,7 @@ static lc_status wait_for(pid_t child, const lc_program *p, int *exit_status, lc
                 ;
             return lc_fail(err, LC_FAULT, "%s was stopped after %g s", p->name, p->seconds);
         }
-        const struct timespec pause = {0, 5000000};
+        const struct timespec pause = {0, nanoseconds};
         nanosleep(&pause, NULL);
     }
 }

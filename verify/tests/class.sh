@@ -24,7 +24,11 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 trap 'exit 1' HUP INT TERM
 cd "$folder"
-mkdir class
+mkdir class build verify
+cp "$program" "$program-worker" build # so that its processes are told from those of other tests
+ln -s "$project/scenes" .
+ln -s "$project/verify/assignments" verify
+program=$folder/build/${program##*/}
 failed=0
 wrong() {
     printf 'class: %s\n' "$1" >&2
@@ -81,7 +85,7 @@ echo 'absent,A,Bo,' >>roster.csv
 
 seconds() { date +%s; }
 results_of() { ls grades/results 2>/dev/null | grep -c '\.json$' || :; }
-ours() { # processes of this very program
+ours() { # processes of this very copy of the program
     ls -l /proc/[0-9]*/exe 2>/dev/null | grep -c -e " $program\$" -e " $program-worker\$" || :
 }
 set -- class -a "$assignment" -j 2 --roster roster.csv -o grades
