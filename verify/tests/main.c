@@ -78,23 +78,24 @@ static int run(SRunner *runner)
 
 int main(int argc, char **argv)
 {
+    if (argc == 2 && strcmp(argv[1], "names") == 0) {
+        for (int i = 0; i < SUITE_COUNT; ++i)
+            puts(suites[i].name);
+        return EXIT_SUCCESS;
+    }
     SRunner *runner = srunner_create(NULL);
     int wanted = argc > 1 ? argc - 1 : SUITE_COUNT, added = 0;
     for (int i = 0; i < SUITE_COUNT; ++i) {
         int named = argc == 1;
-        if (argc == 2 && strcmp(argv[1], "names") == 0)
-            puts(suites[i].name);
         for (int k = 1; k < argc; ++k)
             named |= strcmp(argv[k], suites[i].name) == 0;
         if (named)
             srunner_add_suite(runner, suites[i].make());
         added += named;
     }
-    if (argc == 2 && strcmp(argv[1], "names") == 0)
-        return EXIT_SUCCESS;
-    if (added != wanted) {
-        fputs("tests: a suite that there is not; see `tests names`\n", stderr);
-        return 2;
-    }
-    return run(runner);
+    if (added == wanted)
+        return run(runner);
+    srunner_free(runner);
+    fputs("tests: a suite that there is not; see `tests names`\n", stderr);
+    return 2;
 }
