@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  *
- * POV-Ray as a renderer under test, through its adapter: images of different seeds are different, and their mean is ours.
+ * POV-Ray as a renderer under test, through its adapter: images of different seeds are different, and their mean is ours. And
+ * scenes that were altered by hand, in POV-Ray's own language, are found.
  * Where there is no POV-Ray the tests pass; LIGHTCHECK is the program.
  */
 #include "verify/tests/tests.h"
@@ -8,10 +9,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "estimators/registry.h"
 #include "io/scene_read.h"
+#include "verify/judge/judge.h"
 #include "verify/renderers/adapter.h"
 
 enum { SIDE = 8, FLOATS = 3 * SIDE * SIDE, IMAGES = 32, OURS = 16384 };
@@ -152,6 +155,63 @@ START_TEST(what_it_cannot_do_is_refused)
 }
 END_TEST
 
+/* ---- altered by hand --------------------------------------------------------------------------------------------- */
+
+/* `edit`: what sed does to the file that POV-Ray is about to read. By the adapter, or live beside light_direct. */
+static const struct {
+    const char *scene, *edit;
+    int by_adapter;
+    lc_row_verdict verdict;
+} by_hand[] = {
+    {"plane_rectangle", "", 0, LC_ROW_PASS},
+    {"plane_rectangle", "s/^#declare C = rgb.*/&\\n#declare C = 1.01 * C;/", 0, LC_ROW_FAIL},
+    {"plane_point", "s/^light_source {/#declare unused = 1;\\n&/", 0, LC_ROW_PASS},
+    {"cornell", "/^box/,/^}/s/, -42.24, 40.96,/, -39.68, 40.96,/", 1, LC_ROW_FAIL}, /* 4 cm: 2% of the room */
+};
+
+extern const lc_estimator lc_estimator_light_direct;
+
+/* A program povray that edits, first in the PATH. */
+START_TEST(scenes_altered_by_hand_fail)
+{
+    char real[LC_PROGRAM_PATH], folder[] = "/tmp/lc-altered-XXXXXX", path[4096], wrapper[64];
+    const char *before = getenv("PATH");
+    lc_adapter adapter;
+    lc_verify_options options;
+    lc_report report;
+    if (!lc_program_find(real, "povray") || !open_adapter(&adapter))
+        return;
+    ck_assert_ptr_nonnull(mkdtemp(folder));
+    snprintf(wrapper, sizeof wrapper, "%s/povray", folder);
+    FILE *file = fopen(wrapper, "wb");
+    ck_assert_ptr_nonnull(file);
+    fprintf(file, "#!/bin/sh\n[ ! -e scene.pov ] || { cp scene.pov old; sed -i '%s' scene.pov; } || exit\n"
+                  "[ ! -e old ] || [ -z '%s' ] || ! cmp -s old scene.pov || { echo nothing was altered; exit 1; }\n"
+                  "exec %s \"$@\"\n", by_hand[_i].edit, by_hand[_i].edit, real);
+    ck_assert_int_eq(fclose(file), 0);
+    ck_assert_int_eq(chmod(wrapper, 0700), 0);
+    snprintf(path, sizeof path, "%s:%s", folder, before ? before : "/usr/bin:/bin");
+    ck_assert_int_eq(setenv("PATH", path, 1), 0);
+
+    lc_verify_options_init(&options);
+    if (by_hand[_i].by_adapter) {
+        options.renderer = &adapter;
+        options.estimator = &adapter.estimator;
+    } else {
+        options.estimator = &lc_estimator_light_direct;
+    }
+    options.check = "povray";
+    options.scene = by_hand[_i].scene;
+    lc_status status = lc_verify(&report, &options, lc_scene_open, &err);
+    ck_assert_msg(status == LC_OK, "%s", err.text);
+    ck_assert_int_ge(report.count, 1);
+    ck_assert_msg(report.rows[0].verdict == by_hand[_i].verdict, "%s", report.rows[0].reason);
+    lc_report_release(&report);
+    ck_assert_int_eq(unlink(wrapper), 0);
+    ck_assert_int_eq(rmdir(folder), 0);
+}
+END_TEST
+
 Suite *lc_suite_pov_sample(void)
 {
     Suite *suite = suite_create("pov_sample");
@@ -160,6 +220,10 @@ Suite *lc_suite_pov_sample(void)
     tcase_add_loop_test(tc, the_mean_over_seeds_is_ours, 0, sizeof cases / sizeof cases[0]);
     tcase_add_test(tc, a_seed_gives_the_same_image_again);
     tcase_add_loop_test(tc, what_it_cannot_do_is_refused, 0, sizeof refused / sizeof refused[0]);
+    suite_add_tcase(suite, tc);
+    tc = tcase_create("by_hand");
+    tcase_set_timeout(tc, 300);
+    tcase_add_loop_test(tc, scenes_altered_by_hand_fail, 0, sizeof by_hand / sizeof by_hand[0]);
     suite_add_tcase(suite, tc);
     return suite;
 }
