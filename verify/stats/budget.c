@@ -49,6 +49,7 @@ int lc_budget_text(char *text, size_t size, const lc_budget *b, int width, int h
 lc_looks lc_looks_plan(uint64_t planned, uint64_t most)
 {
     static const double share[LC_MOST_LOOKS] = {0.2, 0.4, 0.6, 1, 4};
+    most -= most % LC_BLOCK; /* else the last look of a plan that is cut is rounded up beyond it, and not taken */
     double all = fmax((double)(planned < most ? planned : most), LC_LEAST_SAMPLES);
     lc_looks looks = {{0}, 0};
     for (int k = 0; k < LC_MOST_LOOKS; ++k) {

@@ -53,6 +53,7 @@ mutant looks_not_paid_for $budget 's|b->fail / ((double)b->rows \* b->channels \
 mutant one_look_paid_for $claim 's/session->rows, 3, LC_MOST_LOOKS};/session->rows, 3, 1};/'
 mutant channels_not_paid_for $claim 's/session->rows, 3, LC_MOST_LOOKS};/session->rows, 1, LC_MOST_LOOKS};/'
 mutant pass_not_split_over_looks $budget 's|b->pass / ((double)b->rows \* b->looks)|b->pass / b->rows|'
+mutant cut_plan_rounded_beyond $budget '/most -= most % LC_BLOCK/d'
 mutant last_looks_cut $budget 's/{0.2, 0.4, 0.6, 1, 4}/{0.2, 0.4, 0.6, 0.6, 0.6}/'
 
 # Verdicts.

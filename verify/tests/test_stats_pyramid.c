@@ -114,6 +114,8 @@ START_TEST(looks_are_shares_of_the_plan)
     ck_assert(looks.count == 4 && looks.samples[3] == 10240);
     looks = lc_looks_plan(1 << 20, 10240); /* the cap is the plan */
     ck_assert(looks.count == 4 && looks.samples[0] == 2048 && looks.samples[3] == 10240);
+    looks = lc_looks_plan(1 << 20, 10250); /* of which only whole blocks can be taken */
+    ck_assert(looks.count == 4 && looks.samples[3] == 10240);
     looks = lc_looks_plan(1000, 1 << 20); /* the first share lies below the floor, which is looked at once */
     ck_assert(looks.count == 5 && looks.samples[0] == LC_LEAST_SAMPLES && looks.samples[1] == 448);
     looks = lc_looks_plan(100, 1 << 20);
