@@ -206,7 +206,7 @@ static lc_status verify(void *user, const lc_strings *rest, lc_error *err)
         return lc_measure_cells(lc_scene_open, options.estimator, a->scene, print_line, NULL, err);
     open_album(&pictures, &options, a->report);
     status = lc_verify(&report, &options, lc_scene_open, err);
-    if (status == LC_OK && report.count == 0)
+    if (status == LC_OK && report.count == 0 && lc_report_faults(&report) == 0)
         status = report.note_count ? lc_fail(err, LC_BAD_INPUT, "nothing to verify: %s", report.notes[0].reason)
                                    : lc_fail(err, LC_BAD_INPUT, "nothing to verify: no check applies to what was selected");
     if (status == LC_OK)

@@ -31,6 +31,15 @@ typedef struct schedule {
     lc_error *err;
 } schedule;
 
+enum { HOPELESS = 3 }; /* faults before any row: the renderer under test does not work at all */
+
+/* A renderer under test that refuses a scene, or fails over it, loses the row and not the run. */
+static int is_lost(const schedule *s, const slot *at)
+{
+    return (at->status == LC_BAD_INPUT || at->status == LC_FAULT) && !at->claim->decide &&
+           lc_is_foreign(s->model, at->claim->estimator);
+}
+
 /* Under the lock. */
 static void tell(schedule *s)
 {
@@ -48,12 +57,13 @@ static void tell(schedule *s)
             }
             status = lc_fail(&at->why, LC_FAULT, "out of memory for the report");
         }
-        if (status == LC_BAD_INPUT && !at->claim->decide && lc_is_foreign(s->model, at->claim->estimator)) {
-            status = lc_report_note(s->report, at->claim->check->name, lc_scene_description(at->claim->scene)->name, at->why.text,
-                                    &at->why);
+        if (is_lost(s, at)) {
+            status = lc_report_note(s->report, at->claim->check->name, lc_scene_description(at->claim->scene)->name,
+                                    at->status == LC_FAULT, at->why.text, &at->why);
             --s->rows;
-            if (status == LC_OK)
+            if (status == LC_OK && (s->report->count > 0 || lc_report_faults(s->report) < HOPELESS))
                 continue;
+            status = LC_FAULT;
         }
         s->status = lc_fail(s->err, status, "%s", at->why.text);
         s->stop = s->told;
@@ -97,7 +107,7 @@ static void *work(void *user)
             at->status = lc_judge_claim(&at->row, &session, at->claim, &at->why);
             pthread_mutex_lock(&s->lock);
             at->is_done = 1;
-            if (at->status != LC_OK && at->status != LC_BAD_INPUT && s->stop > i + 1)
+            if (at->status != LC_OK && !is_lost(s, at) && s->stop > i + 1)
                 s->stop = i + 1;
             tell(s);
             pthread_mutex_unlock(&s->lock);

@@ -93,7 +93,7 @@ static lc_status collect_excuse(lc_report *report, const lc_verify_options *o, c
     if (o->estimator || (o->check && strcmp(o->check, "povray") != 0) || (o->scene && strcmp(o->scene, name) != 0) ||
         !lc_povray_excuse(&why, scene))
         return LC_OK;
-    return lc_report_note(report, "povray", name, why.text, err);
+    return lc_report_note(report, "povray", name, 0, why.text, err);
 }
 
 static int is_selected(const lc_verify_options *o, const lc_claim *claim)

@@ -5,8 +5,8 @@
     mitsuba_adapter.py scene.xml WIDTH HEIGHT SPP SEED BOUNCES OUT.exr [SEED OUT.exr ...]
     mitsuba_adapter.py --describe
 
-VARIANT (scalar_rgb) and INTEGRATOR (path; see mitsuba_render.py) are environment variables. Exit status 2: the integrator cannot
-do what is asked, so there is nothing to judge; 4: Mitsuba is missing or failed.
+VARIANT (scalar_rgb) and INTEGRATOR (path; see mitsuba_render.py) are environment variables. Exit status 2: Mitsuba cannot
+read the scene (motion is a keyword of our own), so there is nothing to judge; 4: Mitsuba is missing or failed.
 """
 import os
 import sys
@@ -47,7 +47,11 @@ def main():
     jobs = [(seed, sys.argv[7])] + [(int(s), out) for s, out in zip(sys.argv[8::2], sys.argv[9::2])]
     mi.set_variant(os.environ.get("VARIANT", "scalar_rgb"))
     mi.set_log_level(mi.LogLevel.Error)
-    scene = mi.load_file(scene_file)
+    try:
+        scene = mi.load_file(scene_file)
+    except (RuntimeError, OSError) as error:
+        print(" ".join(str(error).split()), file=sys.stderr)
+        return 2
     if list(scene.sensors()[0].film().size()) != [width, height]:
         print(f"{scene_file} is not {width} x {height}", file=sys.stderr)
         return 4

@@ -49,7 +49,8 @@ static json_t *notes_json(const lc_report *report)
     json_t *notes = json_array();
     for (int i = 0; notes && i < report->note_count; ++i) {
         const lc_note *n = &report->notes[i];
-        json_array_append_new(notes, json_pack("{s:s, s:s, s:s}", "check", n->check, "scene", n->scene, "reason", n->reason));
+        json_array_append_new(notes, json_pack("{s:s, s:s, s:b, s:s}", "check", n->check, "scene", n->scene, "fault",
+                                               n->is_fault, "reason", n->reason));
     }
     return notes;
 }

@@ -15,9 +15,9 @@ lc_row *lc_report_add(lc_report *report)
     return row;
 }
 
-lc_status lc_report_note(lc_report *report, const char *check, const char *scene, const char *reason, lc_error *err)
+lc_status lc_report_note(lc_report *report, const char *check, const char *scene, int is_fault, const char *reason, lc_error *err)
 {
-    lc_note note;
+    lc_note note = {.is_fault = is_fault};
     snprintf(note.check, sizeof note.check, "%.31s", check);
     snprintf(note.scene, sizeof note.scene, "%.63s", scene);
     snprintf(note.reason, sizeof note.reason, "%.255s", reason);
@@ -32,6 +32,14 @@ lc_status lc_report_note(lc_report *report, const char *check, const char *scene
     report->notes = notes;
     notes[report->note_count++] = note;
     return LC_OK;
+}
+
+int lc_report_faults(const lc_report *report)
+{
+    int count = 0;
+    for (int i = 0; i < report->note_count; ++i)
+        count += report->notes[i].is_fault != 0;
+    return count;
 }
 
 void lc_report_release(lc_report *report)
@@ -50,11 +58,11 @@ const char *lc_row_verdict_name(lc_row_verdict verdict)
 
 lc_status lc_report_status(const lc_report *report)
 {
-    lc_status status = report->count ? LC_OK : LC_BAD_INPUT;
+    lc_status status = lc_report_faults(report) ? LC_FAULT : report->count ? LC_OK : LC_BAD_INPUT;
     for (int i = 0; i < report->count; ++i) {
         if (report->rows[i].verdict == LC_ROW_FAIL)
             return LC_WRONG;
-        if (report->rows[i].verdict == LC_ROW_UNDECIDED)
+        if (report->rows[i].verdict == LC_ROW_UNDECIDED && status == LC_OK)
             status = LC_UNDECIDED;
     }
     return status;

@@ -38,9 +38,10 @@ typedef struct lc_row {
     char pictures[LC_MOST_PATH]; /* FAIL: how the names of its pictures begin, with their folder (pictures.h); empty: none */
 } lc_row;
 
-/* What no row can be about, and why. */
+/* What there is no row about, and why. */
 typedef struct lc_note {
     char check[32], scene[64], reason[256];
+    int is_fault; /* there should be one: the renderer under test crashed, hung or wrote no image */
 } lc_note;
 
 /* What the wrong estimator behaves like, in words. */
@@ -70,10 +71,12 @@ typedef struct lc_report {
 lc_row *lc_report_add(lc_report *report);
 void lc_report_release(lc_report *report);
 /* Appends a note, unless the same is there; LC_FAULT without memory. */
-lc_status lc_report_note(lc_report *report, const char *check, const char *scene, const char *reason, lc_error *err);
+lc_status lc_report_note(lc_report *report, const char *check, const char *scene, int is_fault, const char *reason, lc_error *err);
+int lc_report_faults(const lc_report *report); /* how many notes are faults */
 
 const char *lc_row_verdict_name(lc_row_verdict verdict); /* "PASS" ... */
-/* The exit status: WRONG if any row failed, else UNDECIDED if any is, else OK. No rows at all is BAD_INPUT. */
+/* The exit status: WRONG if any row failed, else FAULT if one is missing by a fault, else UNDECIDED if any is, else OK. No rows at all
+ * is BAD_INPUT. */
 lc_status lc_report_status(const lc_report *report);
 
 /* Each writes the whole report to `out`; errors stay in the stream. */

@@ -102,7 +102,7 @@ void lc_report_text(FILE *out, const lc_report *report)
     }
     for (int i = 0; i < report->note_count; ++i) {
         const lc_note *n = &report->notes[i];
-        fprintf(out, "%s%-10s %-18s no row: %s\n", i ? "" : "\n", n->check, n->scene, n->reason);
+        fprintf(out, "%s%-10s %-18s %s: %s\n", i ? "" : "\n", n->check, n->scene, n->is_fault ? "NOT JUDGED" : "no row", n->reason);
     }
     if (report->behaviour)
         print_behaviour(out, report->behaviour);
@@ -112,8 +112,12 @@ void lc_report_text(FILE *out, const lc_report *report)
                  "times the mean.\n");
     fprintf(out, "%s", report->budget);
     fprintf(out,
-            "%d rows: %d PASS, %d FAIL, %d UNDECIDED; %d pairs of estimator and scene not applicable; %.0f M paths; "
+            "%d rows: %d PASS, %d FAIL, %d UNDECIDED; ",
+            report->count, counts[LC_ROW_PASS], counts[LC_ROW_FAIL], counts[LC_ROW_UNDECIDED]);
+    if (lc_report_faults(report))
+        fprintf(out, "%d NOT JUDGED; ", lc_report_faults(report));
+    fprintf(out,
+            "%d pairs of estimator and scene not applicable; %.0f M paths; "
             "suite %s, seed %llu\n",
-            report->count, counts[LC_ROW_PASS], counts[LC_ROW_FAIL], counts[LC_ROW_UNDECIDED], report->not_applicable,
-            (double)report->paths * 1e-6, report->suite, (unsigned long long)report->seed);
+            report->not_applicable, (double)report->paths * 1e-6, report->suite, (unsigned long long)report->seed);
 }

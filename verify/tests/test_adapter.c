@@ -231,6 +231,41 @@ START_TEST(what_is_refused_is_noted)
 }
 END_TEST
 
+/* A renderer that crashes once loses a row; one that always does is given up. */
+START_TEST(a_crash_loses_one_row)
+{
+    lc_adapter a;
+    lc_verify_options options;
+    lc_report report;
+    char once[sizeof work + 8];
+    make_script("[ \"$1\" = --describe ] && { echo max_bounces=1; exit; }\n[ -e \"$0.once\" ] || { touch \"$0.once\"; kill -SEGV $$; }\n"
+                RENDER "\"$2x$3\"");
+    ck_assert_int_eq(lc_adapter_open(&a, script, 60, &err), LC_OK);
+    lc_verify_options_init(&options);
+    options.renderer = &a;
+    options.estimator = &a.estimator;
+    options.scene = "light_below";
+    ck_assert_msg(lc_verify(&report, &options, lc_scene_open, &err) == LC_OK, "%s", err.text);
+    ck_assert_int_ge(report.count, 1);
+    ck_assert_int_eq(lc_report_faults(&report), 1);
+    ck_assert_int_eq(lc_report_status(&report), LC_FAULT);
+    for (int i = 0; i < report.count; ++i)
+        ck_assert_msg(report.rows[i].verdict == LC_ROW_PASS, "%s", report.rows[i].reason);
+    lc_report_release(&report);
+    snprintf(once, sizeof once, "%s.once", script);
+    ck_assert_int_eq(unlink(once), 0);
+    remove_script();
+
+    make_script("[ \"$1\" = --describe ] && exit 1\necho no licence >&2; exit 1");
+    ck_assert_int_eq(lc_adapter_open(&a, script, 60, &err), LC_OK);
+    options.scene = NULL;
+    ck_assert_int_eq(lc_verify(&report, &options, lc_scene_open, &err), LC_FAULT);
+    ck_assert_msg(strstr(err.text, "no licence") != NULL, "%s", err.text);
+    lc_report_release(&report);
+    remove_script();
+}
+END_TEST
+
 /* In the language of the example, where it is installed: mean irradiance within six standard errors, and a refusal. */
 START_TEST(the_example_renders_what_it_says)
 {
@@ -290,6 +325,7 @@ Suite *lc_suite_adapter(void)
     tcase_add_loop_test(tc, every_failure_is_said, 0, sizeof failures / sizeof failures[0]);
     tcase_add_loop_test(tc, right_adapters_pass_and_wrong_ones_fail, 0, sizeof verdicts / sizeof verdicts[0]);
     tcase_add_test(tc, what_is_refused_is_noted);
+    tcase_add_test(tc, a_crash_loses_one_row);
     tcase_add_test(tc, the_example_renders_what_it_says);
     suite_add_tcase(suite, tc);
     return suite;

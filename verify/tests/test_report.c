@@ -265,6 +265,38 @@ START_TEST(behaviour_is_told)
 }
 END_TEST
 
+/* A row that is missing since the renderer under test failed is an error everywhere; one that it refused is not. */
+START_TEST(what_was_not_judged_is_no_pass)
+{
+    lc_report report;
+    lc_error err;
+    fill(&report);
+    report.count = 2; /* those that pass */
+    ck_assert_int_eq(lc_report_note(&report, "povray", "sky", 0, "refused", &err), LC_OK);
+    ck_assert_int_eq(lc_report_status(&report), LC_OK);
+    for (int i = 0; i < 2; ++i) /* the same is said once */
+        ck_assert_int_eq(lc_report_note(&report, "analytic", "occluder", 1, "ended by <signal 11>", &err), LC_OK);
+    ck_assert_int_eq(lc_report_faults(&report), 1);
+    ck_assert_int_eq(lc_report_status(&report), LC_FAULT);
+    report.count = 3; /* and one that fails */
+    ck_assert_int_eq(lc_report_status(&report), LC_WRONG);
+    write_report(&report, "junit");
+    ck_assert_int_eq(count_tags(text, "testcase"), 4);
+    ck_assert_int_eq(count_tags(text, "error"), 1);
+    ck_assert_ptr_nonnull(strstr(text, "tests=\"4\" failures=\"1\" errors=\"1\""));
+    ck_assert_ptr_nonnull(strstr(text, "message=\"ended by &lt;signal 11&gt;\""));
+    write_report(&report, "text");
+    ck_assert_ptr_nonnull(strstr(text, "NOT JUDGED: ended by <signal 11>\n"));
+    ck_assert_ptr_nonnull(strstr(text, "no row: refused\n"));
+    ck_assert_ptr_nonnull(strstr(text, "; 1 NOT JUDGED; "));
+    write_report(&report, "json");
+    json_t *root = json_loads(text, 0, NULL), *notes = get(root, "no_row");
+    ck_assert(json_is_false(get(json_array_get(notes, 0), "fault")) && json_is_true(get(json_array_get(notes, 1), "fault")));
+    json_decref(root);
+    lc_report_release(&report);
+}
+END_TEST
+
 START_TEST(status_is_the_worst_row)
 {
     lc_report report;
@@ -292,6 +324,7 @@ Suite *lc_suite_report(void)
     tcase_add_test(tc, texts_of_any_bytes);
     tcase_add_test(tc, text_tells_what_failed);
     tcase_add_test(tc, behaviour_is_told);
+    tcase_add_test(tc, what_was_not_judged_is_no_pass);
     tcase_add_test(tc, status_is_the_worst_row);
     suite_add_tcase(suite, tc);
     return suite;
