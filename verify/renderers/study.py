@@ -227,7 +227,7 @@ Three causes explain every FAIL. [mitsuba.md](mitsuba.md) compares image by imag
 ### A mirror in `blendbsdf` loses light
 White sky, a plate that is a perfect mirror by the weight, else black: it must show the weight. A sampled mirror is weighed
 with its probability PLUS the other lobe's density in that direction, as if both were densities: of the mirror's weight w comes
-w^2 / (w + (1 - w) cos / pi). FAIL of `mirror_sky` and `bright_mirrors`; `cornell_mirror` is 1.6% too dark there. With a rough
+w^2 / (w + (1 - w) cos / pi). FAIL of `mirror_sky`, `bright_mirrors` and `cornell_mirror`. With a rough
 mirror (`roughconductor`, alpha 0.001), which has a density, all agree.
 
 """, """
