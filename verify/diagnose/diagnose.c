@@ -342,7 +342,7 @@ static lc_status see(diagnosing *d, const struct view *view, lc_load_scene_fn *l
         v->lights = lc_light_count(scene);
         v->sight = d->arms[0].sight;
         d->out->is_wrong |= v->sight == LC_SIGHT_DIFFERENT || d->film->bad > 0;
-        for (int c = 0; c < 3 && view->max > 0; ++c) {
+        for (int c = 0; c < 3 && view->max > 0 && !is_still(d->film); ++c) { /* roundings do depend on each other */
             lc_batches batches = lc_batches_of_film(d->film, c);
             d->out->repeats |= batches.log_p < log(ERROR);
         }
