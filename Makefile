@@ -122,7 +122,7 @@ verify-table full-table: all
 	    printf '```text\n'; cat $(BUILD)/$@.txt; printf '```\n'; } > $(TABLE)
 
 # One row after the other, the cheap ones first; of the corridors nothing is left to chance, they are exact.
-specular-proof: all ## mirrors and glass to 1e-4: results/specular.md (some twenty minutes of one core)
+specular-proof: all ## mirrors and glass to 1e-4: results/specular.md (half an hour of one core)
 	for s in $(or $(SCENES),mirror_corridor random_corridor critical_angle glass_sphere glass_slab mirror_sky glass_blend); do \
 	    $(BUILD)/lightcheck verify --suite full -c specular -e dielectric --scene $$s --margin 0.0001 || exit; \
 	done > $(BUILD)/$@.txt

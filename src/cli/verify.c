@@ -6,8 +6,8 @@
 #include <sys/stat.h>
 
 #include "cli/commands.h"
-#include "io/scene_read.h"
 #include "io/outfile.h"
+#include "io/scene_read.h"
 #include "verify/grade/jail.h"
 #include "verify/grade/plugin.h"
 #include "verify/judge/judge.h"

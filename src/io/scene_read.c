@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "io/scene_read.h"
 #include "io/scene_path.h"
+#include "io/scene_read.h"
 #include "io/scene_read_material.h"
 
 /* ---- shapes ---- */

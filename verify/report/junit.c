@@ -6,12 +6,18 @@
 #include "verify/report/report.h"
 #include "verify/report/safe.h"
 
-static void print_row(FILE *out, const lc_row *row)
+/* A test case up to the end of its name. */
+static void begin_case(FILE *out, const char *check, const char *scene)
 {
     fputs("    <testcase classname=\"lightcheck.", out);
-    lc_xml_text(out, row->check);
+    lc_xml_text(out, check);
     fputs("\" name=\"", out);
-    lc_xml_text(out, row->scene);
+    lc_xml_text(out, scene);
+}
+
+static void print_row(FILE *out, const lc_row *row)
+{
+    begin_case(out, row->check, row->scene);
     fputc('/', out);
     lc_xml_text(out, row->estimator);
     if (row->verdict == LC_ROW_PASS) {
@@ -29,10 +35,7 @@ static void print_row(FILE *out, const lc_row *row)
 
 static void print_fault(FILE *out, const lc_note *note)
 {
-    fputs("    <testcase classname=\"lightcheck.", out);
-    lc_xml_text(out, note->check);
-    fputs("\" name=\"", out);
-    lc_xml_text(out, note->scene);
+    begin_case(out, note->check, note->scene);
     fputs("\">\n      <error type=\"fault\" message=\"", out);
     lc_xml_text(out, note->reason);
     fputs("\"/>\n    </testcase>\n", out);

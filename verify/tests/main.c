@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * tests [NAME ...]: runs all suites, or those named; `tests names` prints the names. Exit status 0: all passed, 1: not.
+ * tests [NAME ...]: runs all suites, or those named; `tests names` prints the names. Exit status 0: all passed, 1: not,
+ * 2: no such suite.
  */
 #include <stdio.h>
 #include <stdlib.h>
