@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "verify/proof/law_tail.h"
 #include "verify/proof/rules.h"
 
 /* Samples are 2^(e / 8). A coarse search in steps of sqrt(2), then single steps of 9%; each number of samples is tried
@@ -178,6 +179,40 @@ static void report_nulls(FILE *table, experiment *e)
     fprintf(table, "\n");
 }
 
+/* P(t of n coins passes `limit` on this side), every count enumerated. */
+static double coin_rate(const lc_law *coin, double n, double limit, int sign)
+{
+    double p = coin->weight[1], rate = 0;
+    for (double k = 1; k < n; ++k) {
+        double x = k / n, t = sign * (x - p) / sqrt(x * (1 - x) / (n - 1));
+        if (t > limit)
+            rate += exp(lgamma(n + 1) - lgamma(k + 1) - lgamma(n - k + 1) + k * log(p) + (n - k) * log1p(-p));
+    }
+    return rate;
+}
+
+/* At the level itself: one pixel of Jung's rule with Student's threshold, and with that of the law. */
+static void report_thresholds(FILE *table)
+{
+    lc_law coin = lc_law_coin(0.2, 5);
+    double level = 0.5 * lc_sidak_level(ALPHA, LC_RULE_PIXELS);
+    fprintf(table,
+            "\n## The threshold of a skewed law, at the level at which it is used\n\nOne pixel of coins (p = 0.2), every "
+            "count enumerated: how often Jung's t passes its threshold, over the level\nof %.2g a side. A coin's t has "
+            "steps; a step is worth up to twice the level.\n\n| samples | Student's: too dark | too bright | the law's: too "
+            "dark | too bright |\n|---|---|---|---|---|\n",
+            level);
+    for (double n = 512; n <= 32768; n *= 4) {
+        fprintf(table, "| %.0f |", n);
+        for (int of_law = 0; of_law < 2; ++of_law)
+            for (int sign = -1; sign <= 1; sign += 2) {
+                double limit = of_law ? lc_law_student_quantile(&coin, n, level, sign) : lc_t_quantile(level, n - 1);
+                fprintf(table, " %.3g |", coin_rate(&coin, n, limit, sign) / level);
+            }
+        fprintf(table, "\n");
+    }
+}
+
 static int find_rule(const char *name)
 {
     int r = 0;
@@ -256,10 +291,9 @@ static void report_best(FILE *table, result results[SETUPS][4], const setup *set
             "\nMet in %d of %d rows. In %d it is missed by the floor: no level is tested below %d samples a pixel, so "
             "that\nStudent's t holds with any mixture of variances. That is a million samples, 0.1 to 0.3 s, and no "
             "factor.\nIn %d it is missed by the guard: on a skewed law a tile is tested only from (g z^3 / 2.08)^2 of "
-            "its samples\non, because without that its rate would not be the one claimed (see the rates above, and "
-            "`unguarded` in\ncalibration.md); until then a bias shows in coarser tiles. Rules that are ahead there fail "
-            "right images\ntoo (Jung's tiles and pixels: their rates above), or are given the exact law of a pixel, which "
-            "no test of a\nrenderer has (Mitsuba's, here). Both are what a false FAIL in a million costs, and stay.\n",
+            "its samples\non, because without that its rate would not be the one claimed (`unguarded` in calibration.md); until then a "
+            "bias shows in\ncoarser tiles. The rules that are ahead there are given the exact law of a sample, for without "
+            "it they would fail\nright images, too; no test of a renderer has it. Both are what a false FAIL in a million costs, and stay.\n",
             met, SETUPS * 3, at_floor, (int)LC_LEAST_SAMPLES, guarded);
 }
 
@@ -327,6 +361,7 @@ static int report(FILE *table, uint64_t seed)
         e->number = (uint64_t)(100 + s);
         report_nulls(table, e);
     }
+    report_thresholds(table);
     fprintf(table, "\n## Samples needed\n");
     for (int s = 0; s < SETUPS; ++s)
         for (bias_kind b = BIAS_IMAGE; b <= BIAS_PIXEL; ++b) {

@@ -18,6 +18,7 @@ typedef struct lc_limits {
     double mean_z;                                /* of one two-sided normal test */
     double published_z, quorum_z[2], strict_z[2]; /* Mitsuba; [0] a pixel too dark, [1] too bright */
     double sidak_log_p[3], ks[3];                 /* Jung: tiles of 32, 8, 1 pixels a side */
+    double sidak_t[3][2];                         /* of a law that is not Gaussian, as quorum_z; else NaN */
 } lc_limits;
 
 void lc_limits_init(lc_limits *limits, double alpha, const lc_law *law, double samples);
