@@ -20,7 +20,7 @@ static lc_status direct_view(lc_rgb *value, int *kind, const lc_scene *scene, co
     if (!hit->valid)
         return LC_OK;
     lc_material material = lc_material_at(scene, hit);
-    *kind = 8 * hit->shape + (lc_dot(hit->n, hit->wo) > 0);
+    *kind = 8 * hit->part + (lc_dot(hit->n, hit->wo) > 0); /* a part: light jumps at the edges of a cube, too */
     /* A checkerboard's cell, told by its colour. */
     const lc_texture *front = &lc_scene_description(scene)
                                    ->materials[lc_scene_description(scene)->shapes[hit->shape].material]
@@ -49,7 +49,7 @@ static lc_status second_view(lc_rgb *value, int *kind, const lc_scene *scene, co
                              lc_error *err)
 {
     (void)err;
-    *kind = hit->valid ? 2 * hit->shape + (lc_dot(hit->n, hit->wo) > 0) : -1;
+    *kind = hit->valid ? 2 * hit->part + (lc_dot(hit->n, hit->wo) > 0) : -1;
     if (value && hit->valid)
         *value = lc_rgb_scale(LC_INV_PI, lc_rgb_mul(lc_material_at(scene, hit).diffuse,
                                                     lc_second_irradiance(user, hit->shape, hit->p, hit->n)));
