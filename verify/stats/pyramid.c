@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The dyadic pyramid; see pyramid.h. Tiles are visited depth first, so that sums need no memory but the stack. */
+/* The dyadic pyramid; see pyramid.h. Tiles are visited from the image down, since each is guarded by those around it; a tile is summed when it
+ * is visited, that is once a level, so that no memory is needed but the stack. */
 #include "verify/stats/pyramid.h"
 
 #include <math.h>
@@ -11,7 +12,6 @@
 typedef struct level_state {
     double log_tests;       /* ln(2 sides x tiles x levels) */
     double weight;          /* lc_skew_weight() of the one-sided FAIL test of a tile */
-    double pooled[2];       /* skewness of an average tile */
     double screen;          /* a tile with t <= screen cannot beat the worst one so far */
     int screen_age;         /* the number of worst tiles when `screen` was computed */
     double pass_df, pass_t; /* with df >= pass_df, t >= pass_t passes surely */
@@ -100,12 +100,12 @@ static double z_below(double log_p)
     return sqrt(-2 * log_p - 2 * log(2.5066282746310002 * (top + 1 / top)));
 }
 
-/* The smaller of own and pooled trust: raises a tile's skewness to that of the level's average tile. */
-static void guard(const visit_state *state, int level, lc_student *student)
+/* The smallest trust of its own and of all tiles around it: raises a tile's skewness to that of their average tile of this size. */
+static void guard(const visit_state *state, const double around[2], lc_student *student)
 {
     if (state->plan->guard == LC_GUARD_POOLED)
         for (int side = 0; side < 2; ++side)
-            student->skew[side] = fmax(student->skew[side], state->level[level].pooled[side]);
+            student->skew[side] = fmax(student->skew[side], around[side]);
 }
 
 /* Pixels that move together have no more degrees of freedom than there are images. */
@@ -185,7 +185,8 @@ static int is_within(visit_state *state, int level, const lc_student *s)
            lc_student_log_p(s, LC_HIGH, -margin, alpha) <= log(alpha);
 }
 
-static void judge_tile(visit_state *state, int l, int x, int y, const lc_estimate *sum)
+/* `around`: the skewness of an average tile of this size in the tiles around it. */
+static void judge_tile(visit_state *state, int l, int x, int y, const lc_estimate *sum, const double around[2])
 {
     level_state *known = &state->level[l];
     lc_level *level = &state->out->level[l];
@@ -193,7 +194,7 @@ static void judge_tile(visit_state *state, int l, int x, int y, const lc_estimat
     int bottom = y + size < state->height ? y + size : state->height;
     lc_tile tile = {l, x, y, right - x, bottom - y, lc_estimate_student(sum), NAN};
     inflate(&tile.student, state->plan->inflation[l], sum->arm[0].least);
-    guard(state, l, &tile.student);
+    guard(state, around, &tile.student);
     const lc_student *s = &tile.student;
     double least = (double)state->plan->least[l];
     int usable = 0;
@@ -222,30 +223,57 @@ static void judge_tile(visit_state *state, int l, int x, int y, const lc_estimat
     }
 }
 
-static void visit(visit_state *state, int l, int x, int y, lc_estimate *sum)
+/* Child i of 0..3 of a tile on level l >= 1; 0 where it lies beyond the image. */
+static int child_of(const visit_state *state, int l, int x, int y, int i, int *cx, int *cy)
+{
+    int half = 1 << (l - 1);
+    *cx = x + (i & 1) * half;
+    *cy = y + (i >> 1) * half;
+    return *cx < state->width && *cy < state->height;
+}
+
+static void sum_tile(const visit_state *state, int l, int x, int y, lc_estimate *sum)
 {
     if (l == 0) {
         *sum = state->field[(size_t)y * (size_t)state->width + (size_t)x];
-    } else {
-        int half = 1 << (l - 1);
-        visit(state, l - 1, x, y, sum);
-        for (int child = 1; child < 4; ++child) {
-            int cx = x + (child & 1) * half, cy = y + (child >> 1) * half;
-            if (cx < state->width && cy < state->height) {
-                lc_estimate part;
-                visit(state, l - 1, cx, cy, &part);
-                lc_estimate_add(sum, &part);
-            }
-        }
+        return;
     }
-    judge_tile(state, l, x, y, sum);
+    sum_tile(state, l - 1, x, y, sum);
+    for (int i = 1, cx, cy; i < 4; ++i) {
+        lc_estimate part;
+        if (!child_of(state, l, x, y, i, &cx, &cy))
+            continue;
+        sum_tile(state, l - 1, cx, cy, &part);
+        lc_estimate_add(sum, &part);
+    }
 }
 
-/* Shares the budget out and computes what the levels' average tiles look like. */
-static void prepare(visit_state *state, const lc_estimate *image)
+static void visit(visit_state *state, int l, int x, int y, const double around[2])
+{
+    lc_estimate sum;
+    double known[2], within[2];
+    sum_tile(state, l, x, y, &sum);
+    judge_tile(state, l, x, y, &sum, around);
+    if (l == 0)
+        return;
+    lc_student own = lc_estimate_student(&sum);
+    for (int side = 0; side < 2; ++side)
+        known[side] = own.testable ? fmax(around[side], own.skew[side]) : around[side];
+    for (int i = 0, cx, cy; i < 4; ++i) {
+        if (!child_of(state, l, x, y, i, &cx, &cy))
+            continue;
+        int size = 1 << (l - 1);
+        double width = fmin(size, state->width - cx), height = fmin(size, state->height - cy);
+        for (int side = 0; side < 2; ++side)
+            within[side] = known[side] * sqrt(sum.pixels / (width * height));
+        visit(state, l - 1, cx, cy, within);
+    }
+}
+
+/* Shares the budget out. */
+static void prepare(visit_state *state)
 {
     lc_pyramid *out = state->out;
-    lc_student whole = lc_estimate_student(image);
     for (int l = 0; l < out->levels; ++l) {
         level_state *known = &state->level[l];
         int size = 1 << l;
@@ -256,8 +284,6 @@ static void prepare(visit_state *state, const lc_estimate *image)
         known->log_tests = log(2 * tiles * out->levels);
         known->screen_age = -1;
         known->pass_df = known->pass_t = INFINITY;
-        for (int side = 0; side < 2; ++side)
-            known->pooled[side] = whole.testable ? whole.skew[side] * sqrt(tiles) : 0;
     }
     state->pass_z = lc_normal_quantile(state->plan->alpha_pass);
     state->pass_weight = lc_skew_weight(state->plan->alpha_pass);
@@ -293,7 +319,6 @@ lc_status lc_pyramid_judge(lc_pyramid *out, const lc_estimate *field, int width,
     if (status)
         return status;
 
-    lc_estimate sum = lc_estimate_zero();
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
             const lc_estimate *e = &field[(size_t)y * (size_t)width + (size_t)x];
@@ -301,7 +326,6 @@ lc_status lc_pyramid_judge(lc_pyramid *out, const lc_estimate *field, int width,
                 return lc_fail(err, LC_BAD_INPUT,
                                "pixel (%d, %d): difference %g, variances %g and %g, expected finite numbers", x, y,
                                e->difference, e->arm[0].variance, e->arm[1].variance);
-            lc_estimate_add(&sum, e);
         }
     visit_state state;
     memset(&state, 0, sizeof state);
@@ -310,8 +334,9 @@ lc_status lc_pyramid_judge(lc_pyramid *out, const lc_estimate *field, int width,
     state.height = height;
     state.plan = plan;
     state.out = out;
-    prepare(&state, &sum);
-    visit(&state, out->levels - 1, 0, 0, &sum);
+    const double nothing[2] = {0, 0};
+    prepare(&state);
+    visit(&state, out->levels - 1, 0, 0, nothing);
     conclude(&state);
     return LC_OK;
 }

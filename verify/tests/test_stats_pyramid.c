@@ -261,6 +261,35 @@ START_TEST(false_fail_rate_is_held)
 }
 END_TEST
 
+/* n samples of mean `scale`, a bright one in 1/rate worth `worth`, the others with a deviation of `calm`; against the truth. */
+static lc_estimate rare(double n, double scale, double calm, double rate, double worth, uint64_t *state)
+{
+    double hits = 0; /* Poisson, by products of uniform numbers (Knuth) */
+    for (double product = next(state); product > exp(-n * rate); product *= next(state))
+        ++hits;
+    lc_pixel p = symmetric(n, scale * (1 + calm * normal(state) / sqrt(n) + (hits / n - rate) * worth), scale * calm);
+    p.c[0].m2 += hits * pow(scale * worth, 2) * (1 - hits / n);
+    p.c[0].m3 += hits * pow(scale * worth, 3);
+    return lc_estimate_one(&p, 1, 0, scale, 0);
+}
+
+/* The right half is 100 times as dark, and a tenth of its light comes from one sample in 1000. The variance of the bright half hides that
+ * from the image's moments: the larger tiles around a tile know. */
+START_TEST(guard_knows_of_rare_samples_in_the_dark)
+{
+    uint64_t state = 23;
+    for (int trial = 0; trial < 20; ++trial) {
+        lc_pyramid_plan plan;
+        for (int i = 0; i < 64 * 64; ++i)
+            field[i] = i % 64 < 32 ? rare(256, 1, 0.6, 1e-12, 1, &state) : rare(256, 0.01, 0.54, 1e-3, 100, &state);
+        lc_pyramid_plan_init(&plan, 1e-6, 1e-6);
+        lc_pyramid out = judge(64, 64, &plan);
+        ck_assert_msg(out.verdict != LC_FAIL, "trial %d: %dx%d pixels at %d,%d", trial, out.worst.width, out.worst.height,
+                      out.worst.x, out.worst.y);
+    }
+}
+END_TEST
+
 /* Each pixel is calm but for a bright sample in 100 000, worth 1000: most pixels never meet one, and their own moments
  * know nothing of it. Each tile's own skewness lets them fail against the truth; the pooled one does not. */
 START_TEST(pooled_guard_knows_of_rare_samples)
@@ -269,16 +298,8 @@ START_TEST(pooled_guard_knows_of_rare_samples)
     int failed[2] = {0, 0};
     for (int trial = 0; trial < 20; ++trial) {
         const double n = 4096, rate = 1e-5, worth = 1000;
-        for (int i = 0; i < 256; ++i) {
-            double hits = 0; /* Poisson, by products of uniform numbers (Knuth) */
-            for (double product = next(&state); product > exp(-n * rate); product *= next(&state))
-                ++hits;
-            double calm = 1 + 0.1 * normal(&state) / sqrt(n);
-            lc_pixel p = symmetric(n, calm + hits * worth / n, 0.1);
-            p.c[0].m2 += hits * worth * worth * (1 - hits / n);
-            p.c[0].m3 += hits * worth * worth * worth;
-            field[i] = lc_estimate_one(&p, 1, 0, 1 + rate * worth, 0);
-        }
+        for (int i = 0; i < 256; ++i)
+            field[i] = rare(n, 1, 0.1, rate, worth, &state);
         for (int guard = 0; guard < 2; ++guard) {
             lc_pyramid_plan plan;
             lc_pyramid_plan_init(&plan, 1e-6, 1e-6);
@@ -440,6 +461,7 @@ Suite *lc_suite_stats_pyramid(void)
     tcase_add_test(cases, scaled_data_give_the_same);
     tcase_add_test(cases, false_fail_rate_is_held);
     tcase_add_test(cases, pooled_guard_knows_of_rare_samples);
+    tcase_add_test(cases, guard_knows_of_rare_samples_in_the_dark);
     tcase_add_test(cases, still_pixels_do_not_test_alone);
     tcase_add_test(cases, few_samples_do_not_test);
     tcase_add_test(cases, pass_needs_every_declared_level);
