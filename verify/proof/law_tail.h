@@ -8,8 +8,9 @@
 
 #include "verify/proof/synthetic.h"
 
-/* The z > 0 that (mean - true mean) / exact standard error passes with probability alpha, below (sign = -1) or above (+1), by
- * Lugannani and Rice's saddlepoint formula (Adv. Appl. Probab. 12, 1980). A Gaussian law: the normal quantile. */
+/* The z > 0 that (mean - true mean) / exact standard error passes with probability alpha, below (sign = -1) or above (+1): near it by
+ * Lugannani and Rice's saddlepoint formula (Adv. Appl. Probab. 12, 1980), then by importance sampling with that formula's tilt.
+ * A Gaussian law: the normal quantile. */
 double lc_law_mean_quantile(const lc_law *law, double n, double alpha, int sign);
 
 /* The same of (mean - true mean) / its error as estimated from the same n samples, by importance sampling: samples are drawn with

@@ -116,7 +116,7 @@ lc_law lc_law_firefly(double p, double bright)
     law.weight[0] = law.weight[1] = (1 - p) / 2;
     law.weight[2] = p;
     finish(&law);
-    snprintf(law.name, sizeof law.name, "firefly, p = %g", p);
+    snprintf(law.name, sizeof law.name, "firefly, p = %g, worth %g", p, bright);
     return law;
 }
 
