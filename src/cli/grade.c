@@ -12,10 +12,11 @@
 #include "verify/grade/handins.h"
 #include "verify/grade/metadata.h"
 #include "verify/grade/plugin.h"
+#include "verify/grade/seeds.h"
 #include "verify/renderers/adapter.h"
 
 typedef struct grade_arguments {
-    const char *assignment, *seed, *only, *report, *student, *format, *out, *metadata;
+    const char *assignment, *seed, *secret, *only, *report, *student, *format, *out, *metadata;
     int threads, no_jail, teacher, attempt;
     lc_cli_class class;
 } grade_arguments;
@@ -53,8 +54,11 @@ static lc_status grade_one(const grade_arguments *a, const lc_assignment *assign
     options->user = (void *)a;
     if (status == LC_OK && a->metadata) {
         int64_t submitted = 0;
-        status = lc_metadata_read(&submitted, &options->attempt, a->metadata, err);
+        char id[32], purpose[64];
+        status = lc_metadata_read(&submitted, &options->attempt, id, a->metadata, err);
         options->submitted = (time_t)submitted;
+        snprintf(purpose, sizeof purpose, "hand-in %s", id);
+        options->seed = lc_seed_for(options->seed, purpose); /* known to nobody before it was handed in, and the same when it is graded again */
     }
     if (status == LC_OK && lc_cli_is_folder(word)) {
         status = lc_handins_find_one(&handins, word, err);
@@ -80,13 +84,31 @@ static lc_status grade_one(const grade_arguments *a, const lc_assignment *assign
     return status;
 }
 
+/* A class's seed is secret, also from the process list. */
+static lc_status read_seed(lc_grade_options *options, const grade_arguments *a, int is_class, lc_error *err)
+{
+    char text[32] = "";
+    options->is_secret = is_class || a->secret;
+    if (!a->secret)
+        return lc_cli_read_seed(&options->seed, a->seed ? a->seed : is_class ? "random" : "1", err);
+    if (a->seed)
+        return lc_fail(err, LC_BAD_INPUT, "--seed and --secret: one seed is enough");
+    FILE *f = fopen(a->secret, "r");
+    int is_read = f && fscanf(f, "%31s", text) == 1;
+    if (f)
+        fclose(f);
+    if (!is_read || strspn(text, "0123456789") != strlen(text))
+        return lc_fail(err, LC_BAD_INPUT, "--secret %s: expected a file with a whole number", a->secret);
+    return lc_cli_read_seed(&options->seed, text, err);
+}
+
 static lc_status grade(void *user, const lc_strings *rest, lc_error *err)
 {
     grade_arguments *a = user;
     int is_class = !a->metadata && (rest->count > 1 || lc_cli_is_folder(rest->items[0]));
     lc_grade_options options;
     a->class.folder = a->out;
-    a->class.has_seed = a->seed != NULL;
+    a->class.has_seed = a->seed || a->secret;
     if (!a->assignment)
         return lc_fail(err, LC_BAD_INPUT, "-a NAME|FILE.json says which assignment; `lightcheck list assignments` names them");
     if (a->out && !a->format && !is_class)
@@ -106,7 +128,7 @@ static lc_status grade(void *user, const lc_strings *rest, lc_error *err)
     lc_status status = assignment ? lc_assignment_read(assignment, a->assignment, err)
                                   : lc_fail(err, LC_FAULT, "out of memory for a grading");
     if (status == LC_OK)
-        status = lc_cli_read_seed(&options.seed, a->seed ? a->seed : is_class ? "random" : "1", err);
+        status = read_seed(&options, a, is_class || a->metadata, err);
     if (status == LC_OK && is_class)
         status = lc_cli_grade_class(&a->class, rest, assignment, &options, err);
     else if (status == LC_OK)
@@ -121,6 +143,7 @@ static int run(const lc_command *self, int argc, char **argv)
     const lc_option options[] = {
         {'a', "assignment", LC_OPT_STRING, &a.assignment, "NAME|FILE.json", "see `lightcheck list assignments`", 0, 0, NULL},
         {0, "seed", LC_OPT_STRING, &a.seed, "N|random", "draws the scenes; the same file and seed: the same points; default 1, of a class random", 0, 0, NULL},
+        {0, "secret", LC_OPT_STRING, &a.secret, "FILE", "with the seed of a class: what students see does not tell the seed of what is withheld", 0, 0, NULL},
         {0, "format", LC_OPT_CHOICE, &a.format, "FORMAT", "json, gradescope, prairielearn, classroom or junit; default: text", 0, 0,
          "json|gradescope|prairielearn|classroom|junit"},
         {'o', "output", LC_OPT_STRING, &a.out, "FILE|DIR", "the file, written after each test; of a class a folder, default grades-NAME", 0, 0, NULL},

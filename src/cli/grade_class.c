@@ -8,6 +8,7 @@
 
 #include "io/scene_path.h"
 #include "verify/grade/class.h"
+#include "verify/grade/seeds.h"
 
 int lc_cli_is_folder(const char *path)
 {
@@ -43,7 +44,7 @@ static lc_status read_options(lc_class_options *out, const lc_cli_class *self, l
     if (status == LC_OK && out->shard >= out->shards)
         return lc_fail(err, LC_BAD_INPUT, "--shard %s: expected I/N with 0 <= I < N", self->shard);
     if (status == LC_OK && !self->has_seed)
-        return lc_fail(err, LC_BAD_INPUT, "--shard: all shards need the same --seed");
+        return lc_fail(err, LC_BAD_INPUT, "--shard: all shards need the same --seed or --secret");
     return status;
 }
 
@@ -87,7 +88,7 @@ lc_status lc_cli_grade_class(const lc_cli_class *self, const lc_strings *words, 
     if (status == LC_OK && self->resume)
         lc_class_read_seed(&o.grade.seed, o.folder);
     if (status == LC_OK && self->roster)
-        status = lc_roster_read(&roster, self->roster, o.grade.seed, err);
+        status = lc_roster_read(&roster, self->roster, lc_seed_for(o.grade.seed, "pseudonyms"), err);
     if (status == LC_OK && self->roster)
         o.roster = &roster;
     if (status == LC_OK)

@@ -13,7 +13,7 @@
 
 typedef struct sample_arguments {
     const char *estimator, *pixel, *size;
-    int bounces, gdb;
+    int bounces, min_bounces, gdb;
     uint64_t index, seed, arm;
     lc_strings definitions;
     int argc; /* as given, for --gdb */
@@ -86,6 +86,41 @@ static lc_status debug(const sample_arguments *a, lc_error *err)
     return status;
 }
 
+/* Of "SCENE/RELATION:TERM", as a grading names it, the three; 0 where it is no such name. */
+static int is_related(char scene[256], char relation[64], int *term, const char *word)
+{
+    const char *slash = strrchr(word, '/'), *colon = slash ? strchr(slash, ':') : NULL;
+    if (!colon || slash == word || (size_t)(slash - word) >= 256 || colon - slash > 64 || colon[1] < '0' || colon[1] > '9')
+        return 0;
+    snprintf(scene, 256, "%.*s", (int)(slash - word), word);
+    snprintf(relation, 64, "%.*s", (int)(colon - slash - 1), slash + 1);
+    *term = colon[2] ? -1 : colon[1] - '0';
+    return *term >= 0 && *term < LC_MAX_TERMS;
+}
+
+/* A scene of the suites, a drawn one, a file, or what a relation makes of one. */
+static lc_status load(lc_scene **out, const char *name, const sample_arguments *a, lc_error *err)
+{
+    char scene[256], relation[64];
+    int term;
+    lc_scene *from;
+    lc_scene_desc desc;
+    if (lc_family_find(name))
+        return lc_suite_scene(out, name, a->seed, NULL, err);
+    if (!is_related(scene, relation, &term, name))
+        return lc_cli_load_scene(out, name, &a->definitions, err);
+    lc_status status = load(&from, scene, a, err);
+    if (status != LC_OK)
+        return status;
+    status = lc_relation_scene(&desc, lc_scene_description(from), relation, term, err);
+    lc_scene_free(from);
+    if (status == LC_OK) {
+        status = lc_scene_build(out, &desc, err);
+        lc_scene_desc_release(&desc);
+    }
+    return status;
+}
+
 static lc_status replay(void *user, const lc_strings *rest, lc_error *err)
 {
     const sample_arguments *a = user;
@@ -95,20 +130,21 @@ static lc_status replay(void *user, const lc_strings *rest, lc_error *err)
     const lc_estimator *estimator;
     lc_scene *scene = NULL;
     int width, height, x, y;
-    lc_render_options options = {.seed = a->seed};
+    lc_render_options options = {.seed = a->seed, .min_bounces = a->min_bounces};
     if (!a->estimator || !a->pixel)
         return lc_fail(err, LC_BAD_INPUT, "-e NAME|FILE.c and --pixel X,Y say which sample");
     lc_status status = lc_cli_find_estimator(&estimator, a->estimator, err);
     if (status == LC_OK)
         status = lc_cli_read_pair(&x, &y, a->pixel, ',', "--pixel", err);
     if (status == LC_OK)
-        status = lc_family_find(scene_name) ? lc_suite_scene(&scene, scene_name, a->seed, NULL, err)
-                                            : lc_cli_load_scene(&scene, scene_name, &a->definitions, err);
+        status = load(&scene, scene_name, a, err);
     if (status != LC_OK)
         return status;
     width = lc_scene_description(scene)->width;
     height = lc_scene_description(scene)->height;
     status = lc_cli_bounces(&options.max_bounces, a->bounces, scene, estimator, err);
+    if (status == LC_OK && a->min_bounces > options.max_bounces)
+        status = lc_fail(err, LC_BAD_INPUT, "--min-bounces %d: more than the %d that are asked for", a->min_bounces, options.max_bounces);
     if (status == LC_OK && a->size)
         status = lc_cli_read_pair(&width, &height, a->size, 'x', "--size", err);
     if (status == LC_OK && (x >= width || y >= height))
@@ -119,9 +155,9 @@ static lc_status replay(void *user, const lc_strings *rest, lc_error *err)
     if (status == LC_OK) {
         lc_trace_log log = {print_line, NULL};
         options.arm = a->arm <= UINT32_MAX ? (uint32_t)a->arm : lc_arm(estimator->name);
-        printf("sample %llu of pixel %d,%d of %s (%dx%d), %s, bounces 0 to %d, seed %llu\n",
+        printf("sample %llu of pixel %d,%d of %s (%dx%d), %s, bounces %d to %d, seed %llu\n",
                (unsigned long long)a->index, x, y, lc_scene_description(scene)->name, width, height, estimator->name,
-               options.max_bounces, (unsigned long long)a->seed);
+               options.min_bounces, options.max_bounces, (unsigned long long)a->seed);
         lc_rgb c = lc_replay(scene, estimator, &options, width, height, x, y, a->index, &log);
         printf("radiance (%.9g, %.9g, %.9g) W sr^-1 m^-2\n", c.r, c.g, c.b);
     }
@@ -140,6 +176,7 @@ static int run(const lc_command *self, int argc, char **argv)
         {0, "seed", LC_OPT_UINT64, &a.seed, "N", "default 1", 0, 0, NULL},
         {0, "arm", LC_OPT_UINT64, &a.arm, "N", "stream, as `grade` names it; default: the estimator's in a render", 0, 0, NULL},
         {0, "bounces", LC_OPT_INT, &a.bounces, "N", "as for render", 0, LC_UNBOUNDED, NULL},
+        {0, "min-bounces", LC_OPT_INT, &a.min_bounces, "N", "as for render", 0, LC_UNBOUNDED, NULL},
         {0, "size", LC_OPT_STRING, &a.size, "WxH", "as for render", 0, 0, NULL},
         {'D', "define", LC_OPT_LIST, &a.definitions, "NAME=VALUE", "value of a <default> of the scene", 0, 0, NULL},
         {0, "gdb", LC_OPT_FLAG, &a.gdb, NULL, "under gdb, stopped in the estimator; FILE.c is compiled without optimisation", 0, 0, NULL},

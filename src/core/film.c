@@ -222,6 +222,7 @@ static void merge_bad(lc_film *into, const lc_film *from)
         into->bad_y = from->bad_y;
         into->bad_sample = from->bad_sample;
         memcpy(into->bad_value, from->bad_value, sizeof into->bad_value);
+        into->bad_term = from->bad_term;
     }
     into->bad += from->bad;
 }

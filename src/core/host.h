@@ -228,6 +228,7 @@ typedef struct lc_film {
     int bad_x, bad_y;                    /* where the first (by pixel, then sample) was seen */
     uint64_t bad_sample;
     double bad_value[3];
+    int bad_term;                        /* 0: over the scene itself; i: over term i - 1 of lc_render_options' minus. Not kept in files */
 } lc_film;
 
 /* A black film without samples, shard 0 of 1; width and height in [1, LC_MAX_SIZE], else LC_BAD_INPUT. */

@@ -25,6 +25,7 @@ typedef struct job {
 typedef struct bad_samples {
     uint64_t count, pixel, sample;
     double value[3];
+    int term; /* as lc_film's bad_term */
 } bad_samples;
 
 static int is_bad(lc_rgb c)
@@ -54,7 +55,7 @@ static void look(packet *p, const lc_scene *scene, const lc_camera_frame *frame,
     lc_camera_see_packet(scene, p->rays, p->hits);
 }
 
-static void note_bad(bad_samples *bad, lc_rgb c, uint32_t pixel, uint64_t sample)
+static void note_bad(bad_samples *bad, lc_rgb c, int term, uint32_t pixel, uint64_t sample)
 {
     if (bad->count++ != 0 && pixel >= bad->pixel)
         return;
@@ -63,6 +64,7 @@ static void note_bad(bad_samples *bad, lc_rgb c, uint32_t pixel, uint64_t sample
     bad->value[0] = c.r;
     bad->value[1] = c.g;
     bad->value[2] = c.b;
+    bad->term = term;
 }
 
 /* The packets that hold sample `s`: packet 0 of the scene, packet 1 + t of term t. */
@@ -85,8 +87,8 @@ static int add_term(lc_rgb *sum, lc_rgb c, int t, const lc_render_options *o)
     return 1;
 }
 
-/* A sample less the terms, each from the same random numbers; returns 0, with the value that is bad, where one is. */
-static int sample_of(lc_rgb *out, packet *packets, const job *j, uint64_t s)
+/* A sample less the terms, each from the same random numbers; returns 0, with the value that is bad and where, if one is. */
+static int sample_of(lc_rgb *out, int *bad_term, packet *packets, const job *j, uint64_t s)
 {
     const lc_render_options *o = j->options;
     int i = (int)(s % LC_PACKET);
@@ -95,8 +97,10 @@ static int sample_of(lc_rgb *out, packet *packets, const job *j, uint64_t s)
         packet *p = &packets[1 + t];
         lc_options bounces = {o->min_bounces - term->shift, o->max_bounces - term->shift};
         lc_rgb c = j->estimator->radiance(term->scene, &p->rays[i], &p->hits[i], &bounces, &p->samplers[i]);
-        if (!add_term(out, c, t, o))
+        if (!add_term(out, c, t, o)) {
+            *bad_term = 1 + t;
             return 0;
+        }
     }
     return 1;
 }
@@ -110,10 +114,11 @@ static void render_pixel(const job *j, int x, int y, bad_samples *bad)
     int filled = 0;
     for (uint64_t s = o->first; s < o->first + o->count; ++s) {
         lc_rgb c;
+        int term = 0;
         if (s % LC_PACKET == 0 || s == o->first)
             look_everywhere(packets, j, pixel, x, y, s);
-        if (!sample_of(&c, packets, j, s)) {
-            note_bad(bad, c, pixel, s);
+        if (!sample_of(&c, &term, packets, j, s)) {
+            note_bad(bad, c, term, pixel, s);
             c = lc_black(); /* the film stays readable; the count makes it fail */
         }
         block[filled][0] = c.r;
@@ -155,13 +160,14 @@ static void report_bad(lc_film *film, const bad_samples *bad)
         film->bad_y = (int)(bad->pixel / (uint64_t)film->width);
         film->bad_sample = bad->sample;
         memcpy(film->bad_value, bad->value, sizeof film->bad_value);
+        film->bad_term = bad->term;
     }
     film->bad += bad->count;
 }
 
 static void work(job *j, int reports)
 {
-    bad_samples bad = {0, 0, 0, {0, 0, 0}};
+    bad_samples bad = {0, 0, 0, {0, 0, 0}, 0};
     for (int tile = take_tile(j); tile < j->tiles; tile = take_tile(j)) {
         int x0 = tile % j->tiles_x * LC_TILE, y0 = tile / j->tiles_x * LC_TILE;
         for (int y = y0; y < y0 + LC_TILE && y < j->film->height; ++y)
@@ -293,14 +299,14 @@ lc_rgb lc_radiance_outside(const lc_scene *scene, const lc_ray *ray, const lc_hi
 void lc_film_put(lc_film *film, const lc_render_options *options, uint32_t pixel, uint64_t first,
                  const double (*samples)[3], int count)
 {
-    bad_samples bad = {0, 0, 0, {0, 0, 0}};
+    bad_samples bad = {0, 0, 0, {0, 0, 0}, 0};
     double block[LC_BLOCK][3];
     for (int i = 0; i < count; ++i) {
         lc_rgb sum = lc_black();
         for (int t = -1, good = 1; good && t < options->minus_count; ++t, ++samples) {
             good = add_term(&sum, lc_color((*samples)[0], (*samples)[1], (*samples)[2]), t, options);
             if (!good) {
-                note_bad(&bad, sum, pixel, first + (uint64_t)i);
+                note_bad(&bad, sum, 1 + t, pixel, first + (uint64_t)i);
                 sum = lc_black();
                 samples += options->minus_count - 1 - t;
             }

@@ -90,6 +90,10 @@ lc_expect_fn lc_expect_inside;
 /* 0 where POV-Ray renders the scene for the check of that name; else 1, and why it does not, in words. */
 int lc_povray_excuse(lc_error *why, const lc_scene *scene);
 
+/* The scene that a relation of the metamorphic check compares with, called SCENE/RELATION:TERM; the caller releases it. LC_BAD_INPUT where
+ * there is no such relation, or the scene has not what it changes. */
+lc_status lc_relation_scene(lc_scene_desc *out, const lc_scene_desc *from, const char *relation, int term, lc_error *err);
+
 /* 1 for a relation that holds sample by sample, or would but for roulette: a few samples tell. The others are of the mean, in wide margins. */
 int lc_relation_is_sharp(const lc_claim *claim);
 

@@ -231,26 +231,53 @@ static int applies(const struct relation *relation, const lc_scene *scene, const
     return (estimator->lobes & lc_scene_lobes(scene)) != 0 && (estimator->emitters & lc_scene_emitters(scene)) != 0;
 }
 
-/* The scene of term i: built once, for all estimators. */
+static void name_term(char name[64], const struct relation *relation, const lc_scene_desc *from, int i)
+{
+    snprintf(name, 64, "%.39s/%.18s:%d", from->name, relation->name, i % 1000);
+}
+
+/* Term i of a relation; released by the caller. */
+static lc_status describe_term(lc_scene_desc *out, const struct relation *relation, const lc_scene_desc *from, int i, lc_error *err)
+{
+    lc_status status = lc_scene_desc_copy(out, from, err);
+    if (status != LC_OK)
+        return status;
+    name_term(out->name, relation, from, i);
+    status = relation->make(out, i, err);
+    if (status != LC_OK)
+        lc_scene_desc_release(out);
+    return status;
+}
+
+/* Its scene: built once, for all estimators. */
 static lc_status term_scene(const lc_scene **out, lc_claims *claims, const struct relation *relation,
                             const lc_scene *scene, int i, lc_error *err)
 {
     const lc_scene_desc *from = lc_scene_description(scene);
     lc_scene_desc desc;
-    char name[sizeof desc.name];
-    snprintf(name, sizeof name, "%.39s/%.18s %d", from->name, relation->name, i % 1000);
+    char name[64];
+    name_term(name, relation, from, i);
     *out = lc_claims_scene(claims, name);
     if (*out)
         return LC_OK;
-    lc_status status = lc_scene_desc_copy(&desc, from, err);
+    lc_status status = describe_term(&desc, relation, from, i, err);
     if (status != LC_OK)
         return status;
-    memcpy(desc.name, name, sizeof name);
-    status = relation->make(&desc, i, err);
-    if (status == LC_OK)
-        status = lc_claims_build(out, claims, &desc, err);
+    status = lc_claims_build(out, claims, &desc, err);
     lc_scene_desc_release(&desc);
     return status;
+}
+
+lc_status lc_relation_scene(lc_scene_desc *out, const lc_scene_desc *from, const char *relation, int term, lc_error *err)
+{
+    char names[RELATIONS * 20] = "";
+    size_t used = 0;
+    for (int i = 0; i < RELATIONS; ++i) {
+        if (strcmp(relations[i].name, relation) == 0)
+            return describe_term(out, &relations[i], from, term, err);
+        used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", i ? ", " : "", relations[i].name);
+    }
+    return lc_fail(err, LC_BAD_INPUT, "there is no relation '%s' between scenes: %s", relation, names);
 }
 
 /* Which reflections are summed. */

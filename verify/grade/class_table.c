@@ -13,6 +13,7 @@
 #include "verify/grade/class_c.h"
 #include "verify/grade/csv.h"
 #include "verify/grade/formats.h"
+#include "verify/grade/seeds.h"
 #include "verify/grade/similarity.h"
 #include "verify/grade/texts.h"
 #include "verify/report/safe.h"
@@ -37,7 +38,7 @@ lc_status lc_class_read_row(lc_class_row *row, const lc_class *c, lc_error *err)
     if (status != LC_OK)
         return status;
     json_t *o = json_load_file(path, 0, NULL);
-    number_text(seed, c->seed);
+    number_text(seed, lc_seed_of(c->seed, c->options->grade.is_secret, LC_VISIBLE));
     if (strcmp(text_of(o, "format"), "lightcheck-result") != 0 ||
         json_integer_value(json_object_get(o, "version")) != LC_RESULT_VERSION || strcmp(text_of(o, "seed"), seed) != 0 ||
         !(json_is_true(json_object_get(o, "complete")) || json_is_true(json_object_get(o, "fault")))) {
@@ -304,8 +305,8 @@ static void write_class_text(FILE *out, const lc_class *c)
         graded += row->is_graded && !row->is_ungradable;
         sum += row->is_graded && !row->is_ungradable ? row->score : 0;
     }
-    fprintf(out, "\n%d graded, mean score %.3g; %d not gradable, %d missing, %d faults of ours; seed %llu\n", graded,
-            graded ? sum / graded : 0, ungradable, missing, faults, (unsigned long long)c->seed);
+    fprintf(out, "\n%d graded, mean score %.3g; %d not gradable, %d missing, %d faults of ours\n", graded, graded ? sum / graded : 0, ungradable,
+            missing, faults);
     fputs("similarity: share of the smaller file's fingerprints that stand in the other, whatever was renamed; a place to look, no proof\n", out);
 }
 

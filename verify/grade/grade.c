@@ -71,7 +71,7 @@ lc_status lc_grade_finite(lc_grading *g, const lc_job *job, lc_test_result *out,
         if (status == LC_OK)
             status = lc_render(film, job->scenes[i], g->estimator, &o, err);
         if (status == LC_OK && film->bad)
-            lc_test_bad(out, g, desc->name, film);
+            lc_test_bad(out, g, desc->name, film, NULL);
         int is_bad = status == LC_OK && film->bad;
         out->measured.paths += o.count * (uint64_t)desc->width * (uint64_t)desc->height;
         if (status == LC_OK || status == LC_WRONG)
@@ -110,8 +110,10 @@ static lc_status judge_test(lc_grading *g, int i, lc_error *err)
     lc_job *job = &g->jobs[i];
     lc_test_result *out = &g->result->tests[g->options->only ? 0 : i];
     double start = now(), cpu = cpu_for(g, job->test);
-    if (g->jail)
+    if (g->jail) {
         lc_jail_set_cpu(g->jail, cpu);
+        lc_jail_forget_said(g->jail); /* a test that runs nothing shows nothing of the one before, which may be hidden */
+    }
     lc_error why = {""};
     lc_status status = g->options->adapter                    ? lc_grade_images(g, job, out, &why)
                        : job->test->kind == LC_KIND_DESCRIPTOR ? grade_descriptor(g, out)
@@ -190,8 +192,11 @@ static void start_test(lc_grading *g, lc_test_result *out, const lc_test *test, 
              : test->kind == LC_KIND_VARIANCE ? "variance"
                                               : test->check);
     withhold(out, g, test->visibility == LC_AFTER_DUE ? a->due : a->published, is_now);
-    snprintf(out->reproduce, sizeof out->reproduce, "%s grade %.200s%s -a %.200s --seed %llu --only %s", g->options->program, g->path,
-             g->options->adapter ? " --adapters" : "", a->given, (unsigned long long)g->options->seed, test->name);
+    char file[LC_SHELL_WORD(1024)], which[LC_SHELL_WORD(256)];
+    snprintf(out->reproduce, sizeof out->reproduce, "%s grade %s%s -a %s --seed %llu --only %s", g->options->program,
+             lc_grading_file(file, g), g->options->adapter ? " --adapters" : "",
+             lc_shell_word(which, g->options->is_secret ? a->name : a->given),
+             (unsigned long long)lc_grading_seed(g->options, test->visibility), test->name);
 }
 
 static void set_late(lc_grading *g)
@@ -228,7 +233,7 @@ static void start(lc_grade_result *r, const lc_assignment *a, const char *file, 
     snprintf(r->file, sizeof r->file, "%s", file);
     snprintf(r->student, sizeof r->student, "%s", o->student ? o->student : "");
     snprintf(r->jail, sizeof r->jail, "none");
-    r->seed = o->seed;
+    r->seed = lc_grading_seed(o, LC_VISIBLE);
     r->attempt = o->attempt > 0 ? o->attempt : 1;
 }
 
@@ -255,7 +260,7 @@ static lc_status start_result(lc_grading *g, lc_error *err)
             continue;
         g->jobs[i].test = &a->tests[i];
         start_test(g, &r->tests[r->test_count], &a->tests[i], is_now);
-        r->tests[r->test_count].seed = lc_grade_seed(o->seed, a->tests[i].name);
+        r->tests[r->test_count].seed = lc_test_seed(lc_grading_seed(o, a->tests[i].visibility), a->tests[i].name);
         r->most_points += a->tests[i].points;
         ++r->test_count;
     }

@@ -11,6 +11,7 @@
 
 typedef struct lc_grade_options {
     uint64_t seed;            /* of samples and of drawn scenes; draw it after hand-in */
+    int is_secret;            /* 1: students never learn the seed; results and lines name those that are made from it (seeds.h) */
     int threads;              /* 0: one a core */
     int is_open;              /* 1: no jail, the file runs in this process: for one's own code only */
     int is_teacher;           /* 1: nothing is withheld */

@@ -119,7 +119,7 @@ static double report(lc_test_result *out, const lc_grading *g, const lc_claim *c
     if (row->verdict == LC_ROW_FAIL && lc_test_ended(out, g, scene))
         return 0;
     if (seen->bad) {
-        lc_test_bad(out, g, scene, seen->bad);
+        lc_test_bad(out, g, scene, seen->bad, claim->term_count ? claim->term : NULL);
         return 0;
     }
     if (row->verdict == LC_ROW_FAIL && !seen->film) { /* there is nothing to hold it against */

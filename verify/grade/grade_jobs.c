@@ -3,19 +3,23 @@
  * What is claimed of a file: always what would be claimed of the reference, whatever the file says of itself.
  */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "verify/grade/grading.h"
 
-/* Another seed for each test, so that two of them never draw the same scene or the same numbers (SplitMix64's mixing, Steele, Lea,
- * Flood: Fast splittable pseudorandom number generators, OOPSLA 2014). */
-uint64_t lc_grade_seed(uint64_t seed, const char *test)
+uint64_t lc_grading_seed(const lc_grade_options *options, lc_visibility visibility)
 {
-    uint64_t z = seed + 0x9e3779b97f4a7c15u * (1 + (uint64_t)lc_arm(test));
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return z ^ (z >> 31);
+    return lc_seed_of(options->seed, options->is_secret, visibility);
+}
+
+char *lc_grading_file(char *out, const lc_grading *g)
+{
+    char path[1024];
+    const char *slash = g->options->is_secret ? strrchr(g->path, '/') : NULL;
+    snprintf(path, sizeof path, "%s", slash && slash[1] ? slash + 1 : g->path);
+    return lc_shell_word(out, path);
 }
 
 static const lc_check *check_of(const char *name)
@@ -94,7 +98,7 @@ lc_status lc_grading_plan(lc_grading *g, lc_error *err)
     for (int i = 0; i < g->assignment->test_count && status == LC_OK; ++i) {
         lc_job *job = &g->jobs[i];
         job->test = &g->assignment->tests[i];
-        job->seed = lc_grade_seed(g->options->seed, job->test->name);
+        job->seed = lc_test_seed(lc_grading_seed(g->options, job->test->visibility), job->test->name);
         for (int s = 0; s < job->test->scene_count && status == LC_OK; ++s)
             status = plan_scene(job, job->test->scenes[s], g, err);
         g->rows += job->test->kind == LC_KIND_VARIANCE ? job->scene_count : job->claims.count;

@@ -27,8 +27,12 @@ void lc_test_say(lc_test_result *out, const lc_grading *g, const char *id, const
     lc_say(out->shown, sizeof out->shown, g->sentences, lc_test_is_open(out) || !shown ? id : shown, words);
 }
 
-void lc_test_bad(lc_test_result *out, const lc_grading *g, const char *scene, const lc_film *film)
+void lc_test_bad(lc_test_result *out, const lc_grading *g, const char *scene, const lc_film *film, const lc_term *terms)
 {
+    const lc_term *term = terms && film->bad_term > 0 ? &terms[film->bad_term - 1] : NULL;
+    int fewer = term ? term->shift : 0;
+    char file[LC_SHELL_WORD(1024)], where[LC_SHELL_WORD(256)];
+    scene = term ? lc_scene_description(term->scene)->name : scene;
     lc_words words = {.count = 0};
     lc_measured *m = &out->measured;
     m->bad_x = film->bad_x;
@@ -48,9 +52,9 @@ void lc_test_bad(lc_test_result *out, const lc_grading *g, const char *scene, co
     lc_test_settle(out, 0);
     lc_test_say(out, g, "bad_sample", &words);
     snprintf(out->reproduce, sizeof out->reproduce,
-             "%s sample %s -e %.250s --pixel %d,%d --index %llu --seed %llu --arm %lu --bounces %d", g->options->program, scene,
-             g->path, film->bad_x, film->bad_y, (unsigned long long)film->bad_sample, (unsigned long long)film->seed,
-             (unsigned long)film->arm, film->max_bounces);
+             "%s sample %s -e %s --pixel %d,%d --index %llu --seed %llu --arm %lu --min-bounces %d --bounces %d", g->options->program,
+             lc_shell_word(where, scene), lc_grading_file(file, g), film->bad_x, film->bad_y, (unsigned long long)film->bad_sample,
+             (unsigned long long)film->seed, (unsigned long)film->arm, film->min_bounces - fewer, film->max_bounces - fewer);
 }
 
 void lc_test_end(lc_test_result *out, const lc_grading *g, const char *scene, lc_jail_code code, const char *reason)

@@ -123,7 +123,7 @@ static lc_status judge_scene(double *share, lc_grading *g, const lc_job *job, co
         if (status == LC_WRONG && lc_test_ended(out, g, name))
             return LC_OK;
         if (bad) {
-            lc_test_bad(out, g, name, bad);
+            lc_test_bad(out, g, name, bad, NULL);
             lc_film_free(bad);
             return LC_OK;
         }

@@ -6,7 +6,9 @@
 #define LC_GRADING_H
 
 #include "verify/grade/grade.h"
+#include "verify/grade/seeds.h"
 #include "verify/grade/sentences.h"
+#include "verify/report/safe.h"
 
 /* What a test needs: its scenes, and what is claimed over them. */
 typedef struct lc_job {
@@ -35,8 +37,10 @@ typedef struct lc_grading {
 /* grade_jobs.c: builds the scenes of all tests and claims about them; the estimator is known by then. */
 lc_status lc_grading_plan(lc_grading *g, lc_error *err);
 void lc_grading_release(lc_grading *g);
-/* The seed of one test, of its samples and of the scenes that it draws. */
-uint64_t lc_grade_seed(uint64_t seed, const char *test);
+/* The seed from which tests of this visibility are drawn. */
+uint64_t lc_grading_seed(const lc_grade_options *options, lc_visibility visibility);
+/* The file as its author types it: a word of a shell, and of a class without the folder that it was collected in. Of LC_SHELL_WORD(1024) bytes. */
+char *lc_grading_file(char *out, const lc_grading *g);
 /* What a session of this test is run with. */
 void lc_grading_options(lc_verify_options *out, const lc_grading *g, const lc_job *job);
 
@@ -55,8 +59,9 @@ double lc_grade_share(double *margin_shown, const lc_row *row);
 void lc_test_settle(lc_test_result *out, double share);
 /* Writes sentence and its id. */
 void lc_test_say(lc_test_result *out, const lc_grading *g, const char *id, const lc_words *words);
-/* Of a film with bad samples: sentence, numbers and the line that replays the first. `scene` as on a command line. */
-void lc_test_bad(lc_test_result *out, const lc_grading *g, const char *scene, const lc_film *film);
+/* Of a film with bad samples: sentence, numbers and the line that replays the first. `scene` as on a command line; of a claim about several
+ * scenes, `terms` are the others, else NULL. */
+void lc_test_bad(lc_test_result *out, const lc_grading *g, const char *scene, const lc_film *film, const lc_term *terms);
 /* Of a file that ended by `code`: its own fault, or with IE ours. */
 void lc_test_end(lc_test_result *out, const lc_grading *g, const char *scene, lc_jail_code code, const char *reason);
 /* 1, and everything filled in, when the last film of the jail did not end well. */

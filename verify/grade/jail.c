@@ -187,6 +187,7 @@ void lc_jail_close(lc_jail *jail)
 
 const lc_jail_verdict *lc_jail_last(const lc_jail *jail) { return &jail->last.verdict; }
 const char *lc_jail_said(const lc_jail *jail) { return jail->last.said; }
+void lc_jail_forget_said(lc_jail *jail) { jail->last.said[0] = 0; }
 const char *lc_jail_messages(const lc_jail *jail) { return jail->messages; }
 void lc_jail_set_cpu(lc_jail *jail, double cpu_seconds) { jail->cpu_left = cpu_seconds; }
 double lc_jail_cpu_left(const lc_jail *jail) { return jail->cpu_left; }

@@ -72,6 +72,8 @@ const lc_estimator *lc_jail_estimator(const lc_jail *jail);
 const lc_jail_verdict *lc_jail_last(const lc_jail *jail);
 /* What the last film's workers wrote to stdout and stderr, cut at 4 KiB. To be shown, never to be believed. */
 const char *lc_jail_said(const lc_jail *jail);
+/* From now on nothing was said, until the next film. */
+void lc_jail_forget_said(lc_jail *jail);
 /* What the compiler said: warnings. */
 const char *lc_jail_messages(const lc_jail *jail);
 /* The CPU time that is left [s]; another test may get its own. */

@@ -23,7 +23,7 @@ static void copy_moment(char out[64], const char *text)
     snprintf(out, 64, "%.*s%s", (int)(whole < 32 ? whole : 32), text, text + whole + fraction);
 }
 
-lc_status lc_metadata_read(int64_t *submitted, int *attempt, const char *path, lc_error *err)
+lc_status lc_metadata_read(int64_t *submitted, int *attempt, char id[32], const char *path, lc_error *err)
 {
     static char stand_in[] = "{\"created_at\": 0}"; /* the file may be large: each complaint is about its first line */
     char moment[64];
@@ -43,6 +43,10 @@ lc_status lc_metadata_read(int64_t *submitted, int *attempt, const char *path, l
     *attempt = 1;
     for (size_t i = 0; i < json_array_size(previous); ++i)
         *attempt += was_graded(json_array_get(previous, i));
+    const json_t *number = json_object_get(o, "id");
+    id[0] = 0;
+    if (json_is_integer(number))
+        snprintf(id, 32, "%lld", (long long)json_integer_value(number));
     json_decref(value);
     json_decref(o);
     return status;

@@ -30,6 +30,9 @@ typedef enum lc_visibility {
     LC_HIDDEN          /* the same, never */
 } lc_visibility;
 
+/* A command line that names two paths, each in quotes. */
+enum { LC_COMMAND = 9216 };
+
 /* A part of the image, in pixels; width 0: none. */
 typedef struct lc_tile {
     int x, y, width, height;
@@ -69,7 +72,7 @@ typedef struct lc_test_result {
     char shown[640];         /* `sentence`, or where that is withheld what a student may read instead */
     char hint[400];          /* where to look; "" when the assignment gives none (yet) */
     char because[48];        /* SKIPPED: the test that did not pass */
-    char reproduce[512];     /* a command line */
+    char reproduce[LC_COMMAND]; /* a command line */
     char withheld[128];      /* why `reproduce` and the numbers are not shown yet, in a sentence; "": they are */
     char pictures[3][256];   /* paths below the report's folder: yours, reference, difference; "": none was written */
     lc_measured measured;

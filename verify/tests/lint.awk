@@ -180,7 +180,7 @@ function check_foreign(path) {
     else if (path ~ /^gsl\//)
         only(within(file, "verify/"), "GSL", "verify")
     else if (path ~ /^Random123\//)
-        only(of_module("src/core/sampler"), "Random123", "src/core/sampler*")
+        only(of_module("src/core/sampler") || of_module("verify/grade/seeds"), "Random123", "src/core/sampler* and verify/grade/seeds*")
     else if (path ~ /^(seccomp\.h|linux\/)/)
         only(file ~ /^verify\/(grade|tests)\//, path, "verify/grade and verify/tests")
     else if (path == "check.h")

@@ -406,23 +406,26 @@ START_TEST(test_formats_metadata)
 {
     int64_t when = 0;
     int attempt = 0;
+    char id[32];
     lc_error err;
     write_file("{\"id\": 1, \"created_at\": \"2018-07-01T14:22:32.365935-07:00\", \"previous_submissions\": ["
                "{\"score\": 0.0}, {\"results\": {\"extra_data\": {\"code\": \"CE\"}}}, {\"autograder_error\": true},"
                "{\"results\": {\"extra_data\": {\"code\": \"WA\"}}}, {\"results\": null}]}");
-    ck_assert_msg(lc_metadata_read(&when, &attempt, path, &err) == LC_OK, "%s", err.text);
+    ck_assert_msg(lc_metadata_read(&when, &attempt, id, path, &err) == LC_OK, "%s", err.text);
     ck_assert_int_eq(when, 1530480152);
     ck_assert_int_eq(attempt, 4); /* two were not graded */
+    ck_assert_str_eq(id, "1");
     unlink(path);
     write_file("{\"created_at\": \"2018-07-01T14:22:32Z\"}");
-    ck_assert_int_eq(lc_metadata_read(&when, &attempt, path, &err), LC_OK);
+    ck_assert_int_eq(lc_metadata_read(&when, &attempt, id, path, &err), LC_OK);
     ck_assert_int_eq(when, 1530454952);
     ck_assert_int_eq(attempt, 1);
+    ck_assert_str_eq(id, "");
     unlink(path);
     write_file("{\"created_at\": \"yesterday\"}");
-    ck_assert_int_eq(lc_metadata_read(&when, &attempt, path, &err), LC_BAD_INPUT);
+    ck_assert_int_eq(lc_metadata_read(&when, &attempt, id, path, &err), LC_BAD_INPUT);
     unlink(path);
-    ck_assert_int_eq(lc_metadata_read(&when, &attempt, path, &err), LC_BAD_INPUT);
+    ck_assert_int_eq(lc_metadata_read(&when, &attempt, id, path, &err), LC_BAD_INPUT);
 }
 END_TEST
 
