@@ -171,6 +171,7 @@ static lc_moments draw_discrete(const lc_law *law, uint64_t n, gsl_rng *rng)
         count[i] = last ? left : gsl_ran_binomial(rng, law->weight[i] / rest, left);
         rest -= law->weight[i];
         left -= count[i];
+        m.max = count[i] && law->value[i] > m.max ? law->value[i] : m.max;
         sum += count[i] * (law->value[i] - law->mean);
         only = count[i] == n ? i : only;
     }
@@ -192,6 +193,7 @@ void lc_law_draw(lc_pixel *pixel, const lc_law *law, uint64_t n, double scale, d
 {
     lc_moments m = law->values ? draw_discrete(law, n, &stream->rng) : draw_gaussian(law, (double)n, &stream->rng);
     m.mean = scale * m.mean + shift;
+    m.max = m.max > 0 ? fmax(scale * m.max + shift, 0) : 0;
     m.m2 *= scale * scale;
     m.m3 *= scale * scale * scale;
     pixel->n = n;

@@ -6,7 +6,8 @@
  * samples cost one binomial draw a value, whatever n is, and mean, M2 and M3 are those that n samples would have given.
  * The mean, deviation and skewness of such a law are sums, hence exact: nothing is lost by its being a ladder of values
  * where the law that it is named after is continuous. The Gaussian law is drawn from the exact joint law of mean and
- * variance (normal and gamma, independent), and of M3 to leading order, a normal of variance 6 n.
+ * variance (normal and gamma, independent), and of M3 to leading order, a normal of variance 6 n; its largest sample
+ * is not known.
  */
 #ifndef LC_SYNTHETIC_H
 #define LC_SYNTHETIC_H

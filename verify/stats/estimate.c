@@ -18,7 +18,7 @@ lc_verdict lc_verdict_both(lc_verdict a, lc_verdict b)
 
 static lc_arm_sums arm_zero(void)
 {
-    lc_arm_sums arm = {0, 0, 0, 0, INFINITY, 0, 0};
+    lc_arm_sums arm = {.least = INFINITY};
     return arm;
 }
 
@@ -41,6 +41,10 @@ void lc_estimate_add(lc_estimate *into, const lc_estimate *part)
         a->variance2 += b->variance2;
         a->third += b->third;
         a->doubt += b->doubt;
+        for (int bright = 0; bright < 2; ++bright) {
+            a->cubes[bright] += b->cubes[bright];
+            a->sixths[bright] += b->sixths[bright];
+        }
         a->least = b->least < a->least ? b->least : a->least;
         a->sampled += b->sampled;
         a->still += b->still;
@@ -64,9 +68,13 @@ static lc_arm_sums arm_of_pixel(const lc_pixel *pixel, int has_third, int channe
     arm.variance2 = arm.variance * arm.variance / (n - 1);
     arm.still = arm.variance == 0;
     double scale = 1 / (n * (n - 1) * fmax(n - 2, 1));
-    if (has_third && n > 2)
+    if (has_third && n > 2) {
+        int bright = m->m3 > 0;
+        double largest = bright ? m->max - m->mean : m->mean; /* no sample is negative; `max` is 0 in a film from a file */
         arm.third = m->m3 * scale;
-    else
+        arm.cubes[bright] = fabs(m->m3);
+        arm.sixths[bright] = bright && !(m->max > 0) ? INFINITY : fabs(m->m3) * pow(largest, 3);
+    } else
         arm.doubt = m->m2 * sqrt(m->m2) * scale; /* |m3| <= sum |d|^3 <= (sum d^2)^(3/2) */
     return arm;
 }
@@ -172,6 +180,7 @@ lc_student lc_estimate_student(const lc_estimate *e)
     s.tolerance = e->tolerance / pixels;
     s.error = sqrt(variance) / pixels;
     s.df = variance * variance / variance2;
+    s.events[LC_LOW] = s.events[LC_HIGH] = INFINITY;
     for (int i = 0; i < 2; ++i) {
         const lc_arm_sums *arm = &e->arm[i];
         if (arm->sampled && !(arm->variance > 0 && arm->least >= 2))
@@ -181,6 +190,13 @@ lc_student lc_estimate_student(const lc_estimate *e)
         double third = i == 0 ? arm->third : -arm->third;
         spoil[LC_LOW] += fmax(third, 0) + arm->doubt;
         spoil[LC_HIGH] += fmax(-third, 0) + arm->doubt;
+        int rising = i == 0 ? LC_LOW : LC_HIGH, falling = 1 - rising; /* the sides that bright and dark samples spoil */
+        for (int bright = 0; bright < 2; ++bright)
+            if (arm->cubes[bright] > 0)
+                s.events[bright ? rising : falling] =
+                    fmin(s.events[bright ? rising : falling], pow(arm->cubes[bright], 2) / arm->sixths[bright]);
+        if (arm->doubt > 0)
+            s.events[LC_LOW] = s.events[LC_HIGH] = 0;
     }
     s.skew[LC_LOW] = spoil[LC_LOW] / (variance * sqrt(variance));
     s.skew[LC_HIGH] = spoil[LC_HIGH] / (variance * sqrt(variance));

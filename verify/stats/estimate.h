@@ -57,6 +57,8 @@ typedef struct lc_arm_sums {
     double variance2; /* sum of v^2 / (n - 1) */
     double third;     /* sum of the third cumulants of the means */
     double doubt;     /* bound of the sum of those that are unknown (films from files); counts on both sides */
+    double cubes[2];  /* of pixels skewed to dark samples, [1] to bright ones: sum |d|^3, d a sample less its pixel's mean, */
+    double sixths[2]; /* and a bound of their sum d^6; INFINITY where the largest sample is not known */
     double least;     /* fewest samples of a pixel; INFINITY for a constant */
     uint32_t sampled; /* pixels that were sampled; 0 for a constant */
     uint32_t still;   /* pixels among them whose samples are all equal: variance 0 as far as anybody knows */
@@ -101,6 +103,7 @@ typedef struct lc_student {
     double error;   /* standard error of the difference */
     double df;      /* degrees of freedom */
     double skew[2]; /* G >= 0 on the side LC_LOW, LC_HIGH */
+    double events[2]; /* so many samples make up the skewness of a side at least, (sum |d|^3)^2 / sum d^6; INFINITY: it has none */
 } lc_student;
 
 lc_student lc_estimate_student(const lc_estimate *estimate);

@@ -270,6 +270,7 @@ static lc_estimate rare(double n, double scale, double calm, double rate, double
     lc_pixel p = symmetric(n, scale * (1 + calm * normal(state) / sqrt(n) + (hits / n - rate) * worth), scale * calm);
     p.c[0].m2 += hits * pow(scale * worth, 2) * (1 - hits / n);
     p.c[0].m3 += hits * pow(scale * worth, 3);
+    p.c[0].max = scale * (hits > 0 ? worth : 1 + 3 * calm);
     return lc_estimate_one(&p, 1, 0, scale, 0);
 }
 
