@@ -65,6 +65,7 @@ static const struct {
     {"report", lc_suite_report},
     {"similarity", lc_suite_similarity},
     {"roster", lc_suite_roster},
+    {"plain", lc_suite_plain},
     {"status", lc_suite_status},
 };
 
