@@ -4,6 +4,7 @@
 
 #include <math.h>
 
+#include "verify/grade/place.h"
 #include "verify/grade/sentences.h"
 #include "verify/tests/grade_help.h"
 
@@ -35,6 +36,10 @@ static const struct {
     {OPENING "\"due\": \"2026-12-01\"}", ":4: due: ", "a moment with its zone"},
     {OPENING "\"due\": \"2026-12-01T10:00:00\"}", ":4: due: ", "a moment with its zone"},
     {OPENING "\"due\": \"2026-13-01T10:00:00Z\"}", ":4: due: ", "a moment with its zone"},
+    {OPENING "\"due\": \"2026-02-31T10:00:00Z\"}", ":4: due: ", "no such day"},
+    {OPENING "\"due\": \"2026-04-31T10:00:00Z\"}", ":4: due: ", "no such day"},
+    {OPENING "\"due\": \"2100-02-29T10:00:00Z\"}", ":4: due: ", "no such day"}, /* no leap year */
+    {OPENING "\"published\": \"2027-02-29T10:00:00Z\"}", ":4: published: ", "no such day"},
     {OPENING "\"late\": {\"per_day\": 0.1}}", ":4: late: ", "without `due` nothing is late"},
     {OPENING "\"solutions\": [\"path\",\n\"path_no_pi\"]}", ":5: number 2: ", "lightcheck list estimators|variants"},
     {OPENING "\"beyond\": [\"path\"]}", ":4: number 1: ", "lightcheck list mutants"},
@@ -121,6 +126,20 @@ START_TEST(test_assignment_values)
 }
 END_TEST
 
+START_TEST(test_assignment_leap_days)
+{
+    static const struct {
+        const char *text;
+        int64_t seconds; /* date -u -d TEXT +%s */
+    } days[] = {{"2024-02-29T00:00:00Z", 1709164800}, {"2000-02-29T00:00:00Z", 951782400}, {"2026-01-31T00:00:00Z", 1769817600}};
+    for (size_t i = 0; i < sizeof days / sizeof days[0]; ++i) {
+        int64_t seconds = 0;
+        ck_assert_ptr_null(lc_read_moment(&seconds, days[i].text));
+        ck_assert_int_eq(seconds, days[i].seconds);
+    }
+}
+END_TEST
+
 /* ---- those that are shipped ------------------------------------------------------------------------------------------------ */
 
 static void check_shipped(void *user, const char *name, const char *title)
@@ -198,6 +217,7 @@ Suite *lc_suite_assignment(void)
     tcase_add_loop_test(reader, test_assignment_mistakes, 0, sizeof mistakes / sizeof mistakes[0]);
     tcase_add_test(reader, test_assignment_no_such);
     tcase_add_test(reader, test_assignment_values);
+    tcase_add_test(reader, test_assignment_leap_days);
     tcase_add_test(reader, test_assignment_shipped);
     tcase_add_test(reader, test_sentences_translated);
     suite_add_tcase(suite, reader);
