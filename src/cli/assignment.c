@@ -35,6 +35,8 @@ static lc_status check(const assignment_arguments *a, const char *name, lc_error
     if (status == LC_OK)
         status = lc_cli_read_seed(&options.seed, a->seed, err);
     if (status == LC_OK)
+        status = lc_grade_plan(assignment, &options, err);
+    if (status == LC_OK)
         status = lc_rehearse(&r, assignment, &options, print_row, NULL, err);
     if (status == LC_OK) {
         printf("\n%s: %d tests, %.4g points, seed %llu\n", assignment->name, assignment->test_count, r.points,
@@ -57,7 +59,12 @@ static lc_status check(const assignment_arguments *a, const char *name, lc_error
 static lc_status print_public(const char *name, lc_error *err)
 {
     lc_assignment *assignment = malloc(sizeof *assignment);
+    lc_grade_options options;
+    lc_grade_options_init(&options);
+    options.load = lc_scene_open;
     lc_status status = assignment ? lc_assignment_read(assignment, name, err) : lc_fail(err, LC_FAULT, "out of memory for an assignment");
+    if (status == LC_OK)
+        status = lc_grade_plan(assignment, &options, err);
     if (status == LC_OK)
         status = lc_assignment_write_public(stdout, assignment->path, err);
     free(assignment);

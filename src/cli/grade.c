@@ -129,6 +129,8 @@ static lc_status grade(void *user, const lc_strings *rest, lc_error *err)
                                   : lc_fail(err, LC_FAULT, "out of memory for a grading");
     if (status == LC_OK)
         status = read_seed(&options, a, is_class || a->metadata, err);
+    if (status == LC_OK)
+        status = lc_grade_plan(assignment, &options, err);
     if (status == LC_OK && is_class)
         status = lc_cli_grade_class(&a->class, rest, assignment, &options, err);
     else if (status == LC_OK)

@@ -11,6 +11,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "verify/grade/assignment_files.h"
 #include "verify/grade/grading.h"
 #include "verify/grade/plugin.h"
 
@@ -248,6 +249,22 @@ void lc_grade_refused(lc_grade_result *out, const lc_assignment *assignment, con
     out->most_points = lc_assignment_points(assignment);
 }
 
+static lc_status open_sentences(lc_sentences **out, const lc_assignment *a, lc_error *err)
+{
+    char path[LC_PATH_SIZE];
+    if (a->sentences[0])
+        lc_assignment_find(path, a, a->sentences);
+    return lc_sentences_open(out, a->sentences[0] ? path : NULL, err);
+}
+
+static lc_status fail_no_test(const lc_assignment *a, const char *name, lc_error *err)
+{
+    char list[LC_MOST_TESTS * sizeof a->tests[0].name] = "";
+    for (int i = 0; i < a->test_count; ++i)
+        snprintf(list + strlen(list), sizeof list - strlen(list), "%s%s", i ? ", " : "", a->tests[i].name);
+    return lc_fail(err, LC_BAD_INPUT, "%s: there is no test '%.60s'; it has: %s", a->path, name, list);
+}
+
 static lc_status start_result(lc_grading *g, lc_error *err)
 {
     const lc_assignment *a = g->assignment;
@@ -265,7 +282,7 @@ static lc_status start_result(lc_grading *g, lc_error *err)
         ++r->test_count;
     }
     if (r->test_count == 0)
-        return lc_fail(err, LC_BAD_INPUT, "%s: there is no test '%s'", a->path, o->only);
+        return fail_no_test(a, o->only, err);
     set_late(g);
     set_labels(g);
     return LC_OK;
@@ -406,12 +423,31 @@ static lc_status judge_all(lc_grading *g, lc_error *err)
     return status == LC_OK && !g->options->adapter ? give_hints(g, err) : status;
 }
 
+/* Whether anything is claimed does not depend on what the file is: the reference stands for it. */
+lc_status lc_grade_plan(const lc_assignment *assignment, const lc_grade_options *options, lc_error *err)
+{
+    int has_test = !options->only;
+    for (int i = 0; i < assignment->test_count; ++i)
+        has_test |= options->only && strcmp(options->only, assignment->tests[i].name) == 0;
+    if (!has_test)
+        return fail_no_test(assignment, options->only, err);
+    lc_grading *g = calloc(1, sizeof *g);
+    if (!g)
+        return lc_fail(err, LC_FAULT, "out of memory for a grading");
+    g->assignment = assignment;
+    g->options = options;
+    g->reference = g->estimator = lc_right_estimator(assignment->reference);
+    lc_status status = lc_grading_plan(g, err);
+    lc_grading_release(g);
+    free(g);
+    return status;
+}
+
 lc_status lc_grade_file(lc_grade_result *out, const lc_assignment *assignment, const char *path,
                         const lc_grade_options *options, lc_error *err)
 {
     lc_grading *g = calloc(1, sizeof *g);
     double start = now();
-    char table[1400] = "";
     int refused = 0;
     if (!g)
         return lc_fail(err, LC_FAULT, "out of memory for a grading");
@@ -421,11 +457,7 @@ lc_status lc_grade_file(lc_grade_result *out, const lc_assignment *assignment, c
     g->result = out;
     g->cpu_left = assignment->cpu_seconds;
     g->reference = lc_right_estimator(assignment->reference);
-    const char *slash = strrchr(assignment->path, '/');
-    if (assignment->sentences[0])
-        snprintf(table, sizeof table, "%.*s%s", slash ? (int)(slash + 1 - assignment->path) : 0, assignment->path,
-                 assignment->sentences);
-    lc_status status = lc_sentences_open(&g->sentences, table[0] ? table : NULL, err);
+    lc_status status = open_sentences(&g->sentences, assignment, err);
     if (status == LC_OK)
         status = start_result(g, err);
     if (status == LC_OK)

@@ -34,6 +34,10 @@ typedef struct lc_grade_options {
 /* seed 1, all cores, jailed, attempt 1, the program "lightcheck". `load` is the caller's to set. */
 void lc_grade_options_init(lc_grade_options *options);
 
+/* Whether an assignment can be graded by: draws and builds the scenes of this seed, and plans what is claimed over them; renders
+ * nothing. LC_BAD_INPUT with file:line and what is wrong. To be asked once, before the first file. */
+lc_status lc_grade_plan(const lc_assignment *assignment, const lc_grade_options *options, lc_error *err);
+
 /* Fills `out`, whatever the file does: a file that does not compile, a hang, a cheat are results, not errors. LC_OK then; lc_grade_status(out) has the
  * verdict. An error (LC_BAD_INPUT: no such file, scene or test; LC_FAULT) says that there is no result. One grading a process at a time; it
  * forks, so that the caller has no other threads running. Same file, assignment and seed: same points. */
