@@ -109,6 +109,7 @@ static lc_status grade(void *user, const lc_strings *rest, lc_error *err)
     lc_grade_options options;
     a->class.folder = a->out;
     a->class.has_seed = a->seed || a->secret;
+    a->class.has_attempt = a->attempt > 0;
     if (!a->assignment)
         return lc_fail(err, LC_BAD_INPUT, "-a NAME|FILE.json says which assignment; `lightcheck list assignments` names them");
     if (a->out && !a->format && !is_class)
@@ -122,7 +123,7 @@ static lc_status grade(void *user, const lc_strings *rest, lc_error *err)
     options.only = a->only;
     options.report = a->report;
     options.student = a->student;
-    options.attempt = a->attempt;
+    options.attempt = a->attempt > 0 ? a->attempt : 1;
     options.load = lc_scene_open;
     lc_assignment *assignment = malloc(sizeof *assignment);
     lc_status status = assignment ? lc_assignment_read(assignment, a->assignment, err)
@@ -141,7 +142,7 @@ static lc_status grade(void *user, const lc_strings *rest, lc_error *err)
 
 static int run(const lc_command *self, int argc, char **argv)
 {
-    grade_arguments a = {.attempt = 1, .class = {.jobs = 1}};
+    grade_arguments a = {.class = {.jobs = 1}};
     const lc_option options[] = {
         {'a', "assignment", LC_OPT_STRING, &a.assignment, "NAME|FILE.json", "see `lightcheck list assignments`", 0, 0, NULL},
         {0, "seed", LC_OPT_STRING, &a.seed, "N|random", "draws the scenes; the same file and seed: the same points; default 1, of a class random", 0, 0, NULL},
@@ -158,7 +159,7 @@ static int run(const lc_command *self, int argc, char **argv)
         {0, "metadata", LC_OPT_STRING, &a.metadata, "FILE.json", "Gradescope's: attempt and moment; a folder is then one hand-in", 0, 0, NULL},
         {0, "only", LC_OPT_STRING, &a.only, "TEST", "only this test, without those that it requires", 0, 0, NULL},
         {0, "report", LC_OPT_STRING, &a.report, "DIR", "writes three pictures a test there", 0, 0, NULL},
-        {0, "attempt", LC_OPT_INT, &a.attempt, "N", "hints come after some attempts; default 1", 1, 1000000, NULL},
+        {0, "attempt", LC_OPT_INT, &a.attempt, "N", "which attempt it is: hints come after some; default 1, of a class the last, unless it is due later", 1, 1000000, NULL},
         {0, "student", LC_OPT_STRING, &a.student, "ID", "whose file it is", 0, 0, NULL},
         {0, "teacher", LC_OPT_FLAG, &a.teacher, NULL, "shows what is withheld from students", 0, 0, NULL},
         {0, "no-jail", LC_OPT_FLAG, &a.no_jail, NULL, "runs FILE.c in this process: for your own code only", 0, 0, NULL},

@@ -66,7 +66,6 @@ static lc_status save_other(const lc_class *c, const lc_class_row *row, int is_f
     if (!r)
         return no_memory(err);
     options.seed = c->seed;
-    options.attempt = 1;
     options.student = row->student ? row->student->id : NULL;
     lc_grade_refused(r, c->options->assignment, row->handin->path ? row->handin->path : row->handin->name, &options, is_fault, why);
     lc_status status = save(c, row, r, err);

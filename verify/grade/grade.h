@@ -19,6 +19,7 @@ typedef struct lc_grade_options {
     const char *report;       /* folder for pictures, made if need be; NULL: none */
     const char *student;      /* id, or NULL */
     int attempt;              /* counted from 1, for hint_after_attempts; 0: 1 */
+    int is_final;             /* 1: no attempt follows, so that hints are given whatever `attempt` is */
     time_t submitted;         /* for the late policy; 0: not known, never late */
     time_t now;               /* what is withheld until a date; 0: the clock's */
     const lc_estimator *estimator; /* graded instead of a file: for the check of an assignment; NULL: the file */

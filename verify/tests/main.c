@@ -20,6 +20,7 @@ static const struct {
     {"diagnose", lc_suite_diagnose},
     {"mutants", lc_suite_mutants},
     {"lecture", lc_suite_lecture},
+    {"course", lc_suite_course},
     {"handins", lc_suite_handins},
     {"verify", lc_suite_verify},
     {"grade", lc_suite_grade},
