@@ -96,6 +96,7 @@ static int grade_one(void *user)
     options.user = t;
     options.student = t->row->student ? t->row->student->id : NULL;
     options.submitted = t->row->handin->time;
+    options.report_below = t->row->label;
     lc_status status = lc_grade_file(result, c->options->assignment, t->row->handin->path, &options, &err);
     if (status == LC_OK) {
         status = save(c, t->row, result, &err);

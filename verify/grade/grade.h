@@ -17,6 +17,7 @@ typedef struct lc_grade_options {
     int is_teacher;           /* 1: nothing is withheld */
     const char *only;         /* only this test, and without its prerequisites; NULL: all */
     const char *report;       /* folder for pictures, made if need be; NULL: none */
+    const char *report_below; /* folder in it, for those of this file alone; NULL: none */
     const char *student;      /* id, or NULL */
     int attempt;              /* counted from 1, for hint_after_attempts; 0: 1 */
     int is_final;             /* 1: no attempt follows, so that hints are given whatever `attempt` is */
