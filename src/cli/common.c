@@ -49,6 +49,9 @@ lc_status lc_cli_find_estimator(const lc_estimator **out, const char *name, lc_e
             *out = *e;
             return LC_OK;
         }
+    if (strpbrk(name, "./")) /* no estimator is called so */
+        return lc_fail(err, LC_BAD_INPUT, "%s: expected a source file (.c, .cc, .cpp, .cxx), a shared object (.so), or the name of an estimator",
+                       name);
     char list[512] = "";
     list_names(list, sizeof list, lc_estimators);
     return lc_fail(err, LC_BAD_INPUT,
