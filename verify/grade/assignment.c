@@ -386,6 +386,17 @@ static int is_json(const char *name)
     return length > 5 && strcmp(name + length - 5, ".json") == 0;
 }
 
+/* What an assignment names may lie beside it, such as its sentences. What is no JSON is told when it is read. */
+static int is_assignment(const char *folder, const char *name)
+{
+    char path[1500];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    json_t *o = is_json(name) ? json_load_file(path, 0, NULL) : NULL;
+    int has_tests = is_json(name) && (!o || json_object_get(o, "tests"));
+    json_decref(o);
+    return has_tests;
+}
+
 /* Calls `each` with every name, in the order of the alphabet. */
 static lc_status list_names(void (*each)(void *user, const char *folder, const char *name), void *user, lc_error *err)
 {
@@ -395,7 +406,7 @@ static lc_status list_names(void (*each)(void *user, const char *folder, const c
     if (!folder)
         return lc_fail(err, LC_BAD_INPUT, "no folder verify/assignments/ here or beside the program: give a path to a .json file");
     for (struct dirent *entry = readdir(folder); entry && count < 64; entry = readdir(folder))
-        if (is_json(entry->d_name) && strlen(entry->d_name) < sizeof names[0]) {
+        if (is_assignment(path, entry->d_name) && strlen(entry->d_name) < sizeof names[0]) {
             memset(names[count], 0, sizeof names[0]);
             memcpy(names[count++], entry->d_name, strlen(entry->d_name) - 5);
         }

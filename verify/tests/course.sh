@@ -87,7 +87,7 @@ for name in named/*; do
     [ -s "$name/rectangle_yours.png" ] && [ -s "pictured2/feedback/${name##*/}.txt" ] || wrong "pictures in $name, and no feedback of that name"
 done
 ! ls named | grep -q -e ann -e bob || wrong 'names of students where pseudonyms belong'
-rm -r pictures/bob.c
+rm -rf pictures/bob.c
 cp wrong.c few/ann.c # one is graded anew, the other stays
 grade 0 few -a tiny.json --report pictures --resume -o pictured
 [ "$(grep -c '^\[' err)" = 1 ] && [ -s pictures/ann.c/rectangle_yours.png ] && [ ! -e pictures/bob.c ] || wrong 'pictures of a resumed class'
