@@ -25,7 +25,7 @@ typedef struct lc_class_options {
     const lc_roster *roster; /* NULL: none */
     const char *folder;      /* made if need be */
     const char *solutions;   /* folder of published solutions, for similarity; NULL: none */
-    lc_grade_options grade;  /* of each hand-in; `on_test`, `student`, `submitted` and `report` are ours */
+    lc_grade_options grade;  /* of each hand-in; `on_test`, `student`, `submitted` and `report_below` are ours */
     int at_once;             /* processes */
     int resume;              /* 1: goes on in a folder that has results; the seed is that one's */
     int shard, shards;       /* only hand-ins shard, shard + shards, ... by name; shards 1: all */

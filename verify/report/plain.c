@@ -7,10 +7,11 @@
 
 enum { MOST = 8 }; /* "\u202e" and its 0 */
 
-/* Marks, embeddings, overrides and isolates of bidirectional text, and separators of lines: as U+202E, they change what is read beside them. */
+/* Embeddings, overrides and isolates of bidirectional text, and separators of lines: they change how what follows is read. Plain marks of
+ * direction, which a course's own sentences may need, do not. */
 static int turns_text(unsigned point)
 {
-    return (point >= 0x200e && point <= 0x200f) || (point >= 0x2028 && point <= 0x202e) || (point >= 0x2066 && point <= 0x2069);
+    return (point >= 0x2028 && point <= 0x202e) || (point >= 0x2066 && point <= 0x2069);
 }
 
 /* What stands for the character at `c`, ended by 0; returns its bytes. */

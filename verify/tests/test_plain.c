@@ -20,6 +20,7 @@ static const char *const cases[][2] = {
     {"\xe2\x80\xae" "c.exe", "\\u202ec.exe"},    /* from right to left */
     {"\xe2\x81\xa6x\xe2\x81\xa9", "\\u2066x\\u2069"},
     {"\xe2\x80\xa8", "\\u2028"},                 /* a separator of lines */
+    {"\xe2\x80\x8f", "\xe2\x80\x8f"},         /* a mark of Hebrew and Arabic */
     {"\xe2\x80", "\\xe2\\x80"},                  /* cut off */
 };
 
