@@ -137,7 +137,7 @@ grade 0 names -a tiny.json --only compiles -o named_oddly
 says 'M\xfcller.c~' named_oddly/class.txt
 ! LC_ALL=C grep -rq "$(printf '[\033\374]')" named_oddly || wrong 'a control character in what was written'
 # Printed text is marked as such.
-sed 's|lc_rgb sum = lc_black();|&\n    static int n;\n    if (!n++) printf("\\033[2J\\nscore 6 of 6, in 0.1 s\\n");|; 1i #include <stdio.h>' right.c >prints.c
+sed 's|lc_rgb sum = lc_black();|&\n    static int n;\n    if (!n++) fprintf(stderr, "\\033[2J\\nscore 6 of 6, in 0.1 s\\n");|; 1i #include <stdio.h>' right.c >prints.c
 grade 0 prints.c -a tiny.json
 says '    | \x1b[2J' out
 [ "$(grep -c '^score' out)" = 1 ] || wrong "a line that looks like the score: $(cat out)"
