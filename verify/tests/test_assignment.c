@@ -133,7 +133,7 @@ static void write_file(const char *name, const char *text)
 
 static void set_up(void)
 {
-    char command[256];
+    char command[512];
     strcpy(folder, "/tmp/lightcheck-course-XXXXXX");
     ck_assert_ptr_nonnull(mkdtemp(folder));
     snprintf(command, sizeof command, "mkdir %s/own && cp scenes/plane_rectangle.xml %s/own/mine.xml && cp scenes/plane_disk.xml %s/own/other.xml",
