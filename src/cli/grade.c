@@ -109,6 +109,7 @@ static lc_status grade(void *user, const lc_strings *rest, lc_error *err)
     lc_grade_options options;
     a->class.folder = a->out;
     a->class.has_seed = a->seed || a->secret;
+    a->class.secret = a->secret;
     a->class.has_attempt = a->attempt > 0;
     if (!a->assignment)
         return lc_fail(err, LC_BAD_INPUT, "-a NAME|FILE.json says which assignment; `lightcheck list assignments` names them");

@@ -89,12 +89,14 @@ lc_status lc_cli_grade_class(const lc_cli_class *self, const lc_strings *words, 
     lc_class_counts counts;
     snprintf(folder, sizeof folder, "grades-%s", assignment->name);
     /* Our own files may lie among the hand-ins, as when the folder of these is the working directory. */
-    const char *own[4] = {self->folder ? self->folder : folder};
+    const char *own[5] = {self->folder ? self->folder : folder};
     int count = 1;
     if (self->roster)
         own[count++] = self->roster;
     if (grade->report)
         own[count++] = grade->report;
+    if (self->secret)
+        own[count++] = self->secret;
     const lc_handins_options which = {self->adapters, own};
     lc_class_options o = {.assignment = assignment,
                           .handins = &handins,

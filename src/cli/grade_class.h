@@ -10,7 +10,7 @@
 
 typedef struct lc_cli_class {
     int jobs, resume, has_seed, has_attempt, adapters;
-    const char *roster, *shard, *solutions, *folder; /* NULL where not given */
+    const char *roster, *shard, *solutions, *folder, *secret; /* NULL where not given */
 } lc_cli_class;
 
 int lc_cli_is_folder(const char *path);

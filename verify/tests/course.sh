@@ -109,12 +109,13 @@ cp right.c odd/two/b.c
 echo '<html>' >odd/index.html
 echo '<' >odd/stranger.md
 printf 'student_id\ntwo\nnone\nlate\nlink\nBIG\neve\nx\nfine\nabsent\n' >odd/roster.csv
-grade 0 odd -a tiny.json --roster odd/roster.csv -o odd/grades -j 2
+echo 7 >odd/secret
+grade 0 odd -a tiny.json --roster odd/roster.csv --secret odd/secret -o odd/grades -j 2
 awk -F, 'NR > 1 { print $4, $(NF - 1) == "" ? "none" : $(NF - 1) }' odd/grades/gradebook.csv | sort >got
 printf '%s\n' 'BIG 3' 'absent 0' 'eve none' 'fine 3' 'late none' 'link none' 'none none' 'two none' 'x 3' >expected_scores
 diff expected_scores got >difference || wrong "scores of odd hand-ins (expected <, got >): $(cat difference)"
 says '6 could not be graded and have no score' err
-says '1 are of nobody in the roster' err
+says '1 are of nobody in the roster' err # stranger.md
 says '1 of the roster handed in nothing, which is 0' err
 says 'late.txt is no source file; expected one source file' odd/grades/feedback/*
 says 'eve.zip is an archive, and none is unpacked' odd/grades/feedback/*
@@ -122,7 +123,7 @@ says 'link.c is a link, and none is followed' odd/grades/feedback/*
 says '(nobody of the roster)' odd/grades/class.txt
 ! grep -q 'fine.txt' odd/grades/results/* || wrong 'a text beside a source file was taken for work'
 # The folder of results lies among them, and is none.
-grade 0 odd -a tiny.json --roster odd/roster.csv -o odd/grades --resume
+grade 0 odd -a tiny.json --roster odd/roster.csv --secret odd/secret -o odd/grades --resume
 ! grep -q '^\[' err || wrong "something was graded anew: $(cat err)"
 [ "$(wc -l <odd/grades/gradebook.csv)" = 10 ] && ! grep -qE '^(grades|roster)' odd/grades/class.txt || wrong 'its own results were taken for a hand-in'
 
