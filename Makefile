@@ -16,7 +16,7 @@ NEEDS += check.h=check
 CHECK_LIBS = $(shell $(PKGCONF) --libs check 2>/dev/null || echo -lcheck -lsubunit -lrt)
 endif
 
-ifneq ($(filter-out clean help lint fresh gradescope-zip gradescope-check,$(or $(MAKECMDGOALS),all)),)
+ifneq ($(filter-out clean help lint fresh,$(or $(MAKECMDGOALS),all)),)
 SETUP := or run ./setup.sh, which installs all that lightcheck needs
 ifeq ($(shell command -v $(firstword $(CC)) 2>/dev/null),)
 $(error missing compiler $(firstword $(CC)): install gcc, $(SETUP))
@@ -147,11 +147,11 @@ student-kit: all ## what a course gives to its students, without any solution: b
 	sh verify/grade/kit/make_kit.sh $(BUILD)/lightcheck $(BUILD)/lightcheck-student $(ASSIGNMENTS)
 	tar -C $(BUILD) -czf $(BUILD)/lightcheck-student.tar.gz lightcheck-student
 
-gradescope-zip: ## an autograder for Gradescope: build/gradescope-NAME.zip (ASSIGNMENT=NAME or FILE.json)
+gradescope-zip: all ## an autograder for Gradescope: build/gradescope-NAME.zip (ASSIGNMENT=NAME or FILE.json)
 	@test -n "$(ASSIGNMENT)" || { echo 'make gradescope-zip ASSIGNMENT=NAME: see `lightcheck list assignments`' >&2; exit 2; }
-	sh verify/grade/gradescope/make_zip.sh $(ASSIGNMENT) $(BUILD)/gradescope-$(basename $(notdir $(ASSIGNMENT))).zip
+	sh verify/grade/gradescope/make_zip.sh $(BUILD)/lightcheck $(ASSIGNMENT) $(BUILD)/gradescope-$(basename $(notdir $(ASSIGNMENT))).zip
 
-gradescope-check: ## such an autograder in a new minimal Debian laid out as Gradescope's image (root, debootstrap)
+gradescope-check: all ## such an autograder in a new minimal Debian laid out as Gradescope's image (root, debootstrap)
 	@sh verify/tests/gradescope.sh
 
 class: all ## grade a class of 60 hand-ins that hang, crash or do not compile, and kill the grader: results/class.md

@@ -7,14 +7,18 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "verify/report/plain.h"
+
 int lc_complain(const lc_command *command, lc_status status, const char *format, ...)
 {
+    char message[4096]; /* names of files that others chose may stand in it */
     va_list args;
     va_start(args, format);
-    fprintf(stderr, "lightcheck%s%s: ", command ? " " : "", command ? command->name : "");
-    vfprintf(stderr, format, args);
-    fputc('\n', stderr);
+    vsnprintf(message, sizeof message, format, args);
     va_end(args);
+    fprintf(stderr, "lightcheck%s%s: ", command ? " " : "", command ? command->name : "");
+    lc_plain(stderr, message);
+    fputc('\n', stderr);
     return (int)status;
 }
 

@@ -11,6 +11,7 @@
 #include "io/scene_read.h"
 #include "verify/grade/plugin.h"
 #include "verify/mutants/registry.h"
+#include "verify/report/plain.h"
 
 static size_t list_names(char *text, size_t size, const lc_estimator *const *estimators)
 {
@@ -25,7 +26,7 @@ static lc_status load_file(const lc_estimator **out, const char *path, lc_error 
 {
     char messages[8192];
     lc_status status = lc_plugin_load(out, path, messages, sizeof messages, err);
-    fputs(messages, stderr);
+    lc_plain_lines(stderr, messages, "");
     return status;
 }
 
@@ -48,6 +49,9 @@ lc_status lc_cli_find_estimator(const lc_estimator **out, const char *name, lc_e
             *out = *e;
             return LC_OK;
         }
+    if (strpbrk(name, "./")) /* no estimator is called so */
+        return lc_fail(err, LC_BAD_INPUT, "%s: expected a source file (.c, .cc, .cpp, .cxx), a shared object (.so), or the name of an estimator",
+                       name);
     char list[512] = "";
     list_names(list, sizeof list, lc_estimators);
     return lc_fail(err, LC_BAD_INPUT,

@@ -109,6 +109,8 @@ static lc_status grade(void *user, const lc_strings *rest, lc_error *err)
     lc_grade_options options;
     a->class.folder = a->out;
     a->class.has_seed = a->seed || a->secret;
+    a->class.secret = a->secret;
+    a->class.has_attempt = a->attempt > 0;
     if (!a->assignment)
         return lc_fail(err, LC_BAD_INPUT, "-a NAME|FILE.json says which assignment; `lightcheck list assignments` names them");
     if (a->out && !a->format && !is_class)
@@ -122,13 +124,15 @@ static lc_status grade(void *user, const lc_strings *rest, lc_error *err)
     options.only = a->only;
     options.report = a->report;
     options.student = a->student;
-    options.attempt = a->attempt;
+    options.attempt = a->attempt > 0 ? a->attempt : 1;
     options.load = lc_scene_open;
     lc_assignment *assignment = malloc(sizeof *assignment);
     lc_status status = assignment ? lc_assignment_read(assignment, a->assignment, err)
                                   : lc_fail(err, LC_FAULT, "out of memory for a grading");
     if (status == LC_OK)
         status = read_seed(&options, a, is_class || a->metadata, err);
+    if (status == LC_OK)
+        status = lc_grade_plan(assignment, &options, err);
     if (status == LC_OK && is_class)
         status = lc_cli_grade_class(&a->class, rest, assignment, &options, err);
     else if (status == LC_OK)
@@ -139,7 +143,7 @@ static lc_status grade(void *user, const lc_strings *rest, lc_error *err)
 
 static int run(const lc_command *self, int argc, char **argv)
 {
-    grade_arguments a = {.attempt = 1, .class = {.jobs = 1}};
+    grade_arguments a = {.class = {.jobs = 1}};
     const lc_option options[] = {
         {'a', "assignment", LC_OPT_STRING, &a.assignment, "NAME|FILE.json", "see `lightcheck list assignments`", 0, 0, NULL},
         {0, "seed", LC_OPT_STRING, &a.seed, "N|random", "draws the scenes; the same file and seed: the same points; default 1, of a class random", 0, 0, NULL},
@@ -149,14 +153,14 @@ static int run(const lc_command *self, int argc, char **argv)
         {'o', "output", LC_OPT_STRING, &a.out, "FILE|DIR", "the file, written after each test; of a class a folder, default grades-NAME", 0, 0, NULL},
         {'j', "jobs", LC_OPT_INT, &a.class.jobs, "N", "of a class: N hand-ins at once; default 1", 1, 1024, NULL},
         {0, "resume", LC_OPT_FLAG, &a.class.resume, NULL, "of a class: goes on in the folder, with its seed; faults of ours are graded again", 0, 0, NULL},
-        {0, "roster", LC_OPT_STRING, &a.class.roster, "FILE.csv", "of a class: who is in it; student_id,last_name,first_name,email,file", 0, 0, NULL},
+        {0, "roster", LC_OPT_STRING, &a.class.roster, "FILE.csv", "of a class: who is in it; student_id,last_name,first_name,email,file,submitted", 0, 0, NULL},
         {0, "shard", LC_OPT_STRING, &a.class.shard, "I/N", "of a class: every N-th hand-in from the I-th on, 0 <= I < N; with --seed", 0, 0, NULL},
         {0, "solutions", LC_OPT_STRING, &a.class.solutions, "DIR", "of a class: compared with these, too; default estimators/", 0, 0, NULL},
         {0, "adapters", LC_OPT_FLAG, &a.class.adapters, NULL, "FILE, or an executable `adapter*` in a hand-in's folder, is graded by its images, NOT locked up", 0, 0, NULL},
         {0, "metadata", LC_OPT_STRING, &a.metadata, "FILE.json", "Gradescope's: attempt and moment; a folder is then one hand-in", 0, 0, NULL},
         {0, "only", LC_OPT_STRING, &a.only, "TEST", "only this test, without those that it requires", 0, 0, NULL},
-        {0, "report", LC_OPT_STRING, &a.report, "DIR", "writes three pictures a test there", 0, 0, NULL},
-        {0, "attempt", LC_OPT_INT, &a.attempt, "N", "hints come after some attempts; default 1", 1, 1000000, NULL},
+        {0, "report", LC_OPT_STRING, &a.report, "DIR", "writes three pictures a test there; of a class below it, in a folder for each hand-in", 0, 0, NULL},
+        {0, "attempt", LC_OPT_INT, &a.attempt, "N", "which attempt it is: hints come after some; default 1, of a class the last, unless it is due later", 1, 1000000, NULL},
         {0, "student", LC_OPT_STRING, &a.student, "ID", "whose file it is", 0, 0, NULL},
         {0, "teacher", LC_OPT_FLAG, &a.teacher, NULL, "shows what is withheld from students", 0, 0, NULL},
         {0, "no-jail", LC_OPT_FLAG, &a.no_jail, NULL, "runs FILE.c in this process: for your own code only", 0, 0, NULL},

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <time.h>
 
 #include "io/scene_path.h"
 #include "verify/grade/class.h"
@@ -48,14 +49,31 @@ static lc_status read_options(lc_class_options *out, const lc_cli_class *self, l
     return status;
 }
 
-static lc_status conclude(const lc_class_options *o, int faults, lc_error *err)
+/* Hints wait for some attempts, so that nobody finds a bug by handing in anew. A class is graded once all have handed in: what follows is
+ * reading the feedback. Only before the due date a further attempt may come. */
+static int is_over(const lc_assignment *assignment) { return !assignment->due || time(NULL) > assignment->due; }
+
+/* What a person has to look at: no score of these is to be taken for one that was earned. */
+static void report_counts(const lc_class_counts *n)
+{
+    if (n->ungradable)
+        fprintf(stderr, "%d could not be graded and have no score: a person decides\n", n->ungradable);
+    if (n->nobodys)
+        fprintf(stderr, "%d are of nobody in the roster, and not in the gradebook\n", n->nobodys);
+    if (n->missing)
+        fprintf(stderr, "%d of the roster handed in nothing, which is 0\n", n->missing);
+}
+
+static lc_status conclude(const lc_class_options *o, const lc_class_counts *n, lc_error *err)
 {
     char path[LC_PATH_SIZE];
     snprintf(path, sizeof path, "%s/gradebook.csv", o->folder);
     struct stat info;
-    if (faults)
-        return lc_fail(err, LC_FAULT, "%d could not be graded by a fault of ours (%s/logs): run it again with --resume", faults, o->folder);
-    if (stat(path, &info) == 0)
+    if (n->faults)
+        return lc_fail(err, LC_FAULT, "%d could not be graded by a fault of ours (%s/logs): run it again with --resume", n->faults, o->folder);
+    if (n->left == 0)
+        report_counts(n);
+    if (n->left == 0 && stat(path, &info) == 0)
         printf("%s, %s/class.txt, %s/feedback\n", path, o->folder, o->folder);
     else
         printf("%s: other shards are not there yet\n", o->folder);
@@ -68,8 +86,18 @@ lc_status lc_cli_grade_class(const lc_cli_class *self, const lc_strings *words, 
     char solutions[LC_PATH_SIZE], folder[128];
     lc_handins handins = {NULL, 0};
     lc_roster roster = {NULL, 0};
-    int faults = 0;
+    lc_class_counts counts;
     snprintf(folder, sizeof folder, "grades-%s", assignment->name);
+    /* Our own files may lie among the hand-ins, as when the folder of these is the working directory. */
+    const char *own[5] = {self->folder ? self->folder : folder};
+    int count = 1;
+    if (self->roster)
+        own[count++] = self->roster;
+    if (grade->report)
+        own[count++] = grade->report;
+    if (self->secret)
+        own[count++] = self->secret;
+    const lc_handins_options which = {self->adapters, own};
     lc_class_options o = {.assignment = assignment,
                           .handins = &handins,
                           .folder = self->folder ? self->folder : folder,
@@ -82,9 +110,10 @@ lc_status lc_cli_grade_class(const lc_cli_class *self, const lc_strings *words, 
                           .on_handin = on_handin};
     if (self->jobs > 1)
         o.grade.threads = 1;
+    o.grade.is_final = !self->has_attempt && is_over(assignment);
     lc_status status = read_options(&o, self, err);
     if (status == LC_OK)
-        status = lc_handins_find(&handins, words->items, words->count, self->adapters, err);
+        status = lc_handins_find(&handins, words->items, words->count, &which, err);
     if (status == LC_OK && self->resume)
         lc_class_read_seed(&o.grade.seed, o.folder);
     if (status == LC_OK && self->roster)
@@ -92,9 +121,9 @@ lc_status lc_cli_grade_class(const lc_cli_class *self, const lc_strings *words, 
     if (status == LC_OK && self->roster)
         o.roster = &roster;
     if (status == LC_OK)
-        status = lc_class_grade(&o, &faults, err);
+        status = lc_class_grade(&o, &counts, err);
     if (status == LC_OK)
-        status = conclude(&o, faults, err);
+        status = conclude(&o, &counts, err);
     lc_roster_release(&roster);
     lc_handins_release(&handins);
     return status;

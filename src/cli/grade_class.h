@@ -9,8 +9,8 @@
 #include "verify/grade/grade.h"
 
 typedef struct lc_cli_class {
-    int jobs, resume, has_seed, adapters;
-    const char *roster, *shard, *solutions, *folder; /* NULL where not given */
+    int jobs, resume, has_seed, has_attempt, adapters;
+    const char *roster, *shard, *solutions, *folder, *secret; /* NULL where not given */
 } lc_cli_class;
 
 int lc_cli_is_folder(const char *path);

@@ -10,6 +10,7 @@
 #include "verify/checks/family.h"
 #include "verify/grade/plugin.h"
 #include "verify/judge/judge.h"
+#include "verify/report/plain.h"
 
 typedef struct sample_arguments {
     const char *estimator, *pixel, *size;
@@ -35,7 +36,7 @@ static lc_status make_object(char object[64], const sample_arguments *a, lc_erro
         return LC_OK;
     snprintf(object, 64, "/tmp/lightcheck-gdb-%ld.so", (long)getpid());
     lc_status status = lc_plugin_write(object, a->estimator, messages, sizeof messages, err);
-    fputs(messages, stderr);
+    lc_plain_lines(stderr, messages, "");
     if (status != LC_OK)
         object[0] = 0;
     return status;

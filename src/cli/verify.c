@@ -12,6 +12,7 @@
 #include "verify/grade/plugin.h"
 #include "verify/judge/judge.h"
 #include "verify/report/diagnosis.h"
+#include "verify/report/plain.h"
 
 typedef struct verify_arguments {
     const char *suite, *estimator, *check, *scene, *seed, *format, *report, *renderer, *shard;
@@ -119,7 +120,7 @@ static lc_status open_estimator(lc_verify_options *options, lc_jail **jail, char
     lc_status status = lc_jail_open(jail, a->estimator, NULL, NULL, err);
     if (status != LC_OK)
         return status;
-    fputs(lc_jail_messages(*jail), stderr);
+    lc_plain_lines(stderr, lc_jail_messages(*jail), "");
     options->estimator = lc_jail_estimator(*jail);
     snprintf(given, size, "%s --jail", a->estimator);
     options->given = given;

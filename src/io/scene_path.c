@@ -90,11 +90,13 @@ static lc_status unknown_scene(const char *name, lc_error *err)
     return lc_fail(err, LC_BAD_INPUT, "unknown scene '%s'; expected a path to an .xml file or one of: %s", name, list);
 }
 
+int lc_scene_is_path(const char *name) { return strchr(name, '/') || ends_with(name, ".xml"); }
+
 lc_status lc_scene_locate(char path[LC_PATH_SIZE], const char *name, lc_error *err)
 {
     if (strlen(name) >= LC_PATH_SIZE / 2)
         return lc_fail(err, LC_BAD_INPUT, "the scene's path is longer than %d characters", LC_PATH_SIZE / 2);
-    if (strchr(name, '/') || ends_with(name, ".xml")) {
+    if (lc_scene_is_path(name)) {
         snprintf(path, LC_PATH_SIZE, "%s", name);
         return LC_OK;
     }

@@ -9,7 +9,9 @@
 
 enum { LC_PATH_SIZE = 4096 };
 
-/* The path of `name`: itself when it has a slash or ends in .xml, else the file NAME.xml of the scenes' folder; LC_BAD_INPUT lists the valid names. */
+/* 1 for what names a file, not a scene of that folder: it has a slash or ends in .xml. */
+int lc_scene_is_path(const char *name);
+/* The path of `name`: itself when it is one, else the file NAME.xml of the scenes' folder; LC_BAD_INPUT lists the valid names. */
 lc_status lc_scene_locate(char path[LC_PATH_SIZE], const char *name, lc_error *err);
 
 /* The names of all scenes, sorted; release with lc_scene_names_free. */

@@ -14,7 +14,9 @@
 #include "estimators/registry.h"
 #include "io/scene_path.h"
 #include "verify/checks/family.h"
+#include "verify/grade/assignment_files.h"
 #include "verify/grade/place.h"
+#include "verify/grade/sentences.h"
 
 static const char root_keys[] = "title|summary|reference|lobes|emitters|bounces|margin|false_failure|cpu_seconds|hints|due|"
                                 "published|late|solutions|mutants_of|beyond|sentences|tests";
@@ -38,10 +40,19 @@ const lc_estimator *lc_right_estimator(const char *name)
     return NULL;
 }
 
-static lc_status check_scene(const lc_place *place, const char *name, lc_error *err)
+static lc_status check_file(const lc_assignment *a, const lc_place *place, const char *name, lc_error *err)
+{
+    char path[LC_PATH_SIZE];
+    return lc_assignment_find(path, a, name) ? LC_OK
+                                             : lc_place_fail(err, place, "cannot read '%s': it is neither beside this file nor here", name);
+}
+
+static lc_status check_scene(const lc_assignment *a, const lc_place *place, const char *name, lc_error *err)
 {
     char path[LC_PATH_SIZE];
     lc_error why;
+    if (lc_scene_is_path(name))
+        return check_file(a, place, name, err);
     if (lc_family_find(name) || lc_scene_locate(path, name, &why) == LC_OK)
         return LC_OK;
     return lc_place_fail(err, place, "%.700s", why.text);
@@ -113,7 +124,7 @@ static lc_status read_requires(lc_test *test, const lc_assignment *a, const lc_p
     return status;
 }
 
-static lc_status read_scenes(lc_test *test, const lc_place *place, lc_error *err)
+static lc_status read_scenes(lc_test *test, const lc_assignment *a, const lc_place *place, lc_error *err)
 {
     size_t count;
     int needs = test->kind != LC_KIND_DESCRIPTOR;
@@ -124,7 +135,8 @@ static lc_status read_scenes(lc_test *test, const lc_place *place, lc_error *err
         lc_place item = lc_place_item(place, i);
         status = lc_place_string(test->scenes[i], sizeof test->scenes[i], &item, 1, err);
         if (status == LC_OK)
-            status = check_scene(&item, test->scenes[i], err);
+            status = check_scene(a, &item, test->scenes[i], err);
+        test->scene_lines[i] = lc_place_line(&item);
         test->scene_count = (int)i + 1;
     }
     return status;
@@ -206,7 +218,7 @@ static lc_status read_test(lc_assignment *a, const lc_place *place, lc_error *er
     if (status == LC_OK)
         status = read_requires(test, a, &needs, err);
     if (status == LC_OK)
-        status = read_scenes(test, &scenes, err);
+        status = read_scenes(test, a, &scenes, err);
     if (status == LC_OK)
         status = read_bounces(test, &bounces, err);
     if (status == LC_OK)
@@ -279,6 +291,21 @@ static lc_status read_times(lc_assignment *a, const lc_place *root, lc_error *er
     return status == LC_OK ? read_late(a, &late, err) : status;
 }
 
+/* The table is read once here, for the mistakes in it. */
+static lc_status read_sentences(lc_assignment *a, const lc_place *place, lc_error *err)
+{
+    char path[LC_PATH_SIZE];
+    lc_sentences *table = NULL;
+    lc_status status = lc_place_string(a->sentences, sizeof a->sentences, place, 0, err);
+    if (status != LC_OK || !a->sentences[0])
+        return status;
+    status = check_file(a, place, a->sentences, err);
+    if (status == LC_OK && lc_assignment_find(path, a, a->sentences))
+        status = lc_sentences_open(&table, path, err);
+    lc_sentences_close(table);
+    return status;
+}
+
 static lc_status read_root(lc_assignment *a, const lc_place *root, lc_error *err)
 {
     size_t count = 0;
@@ -314,7 +341,7 @@ static lc_status read_root(lc_assignment *a, const lc_place *root, lc_error *err
     if (status == LC_OK)
         status = read_names(a->beyond, &a->beyond_count, &beyond, is_mutant, "mutants", err);
     if (status == LC_OK)
-        status = lc_place_string(a->sentences, sizeof a->sentences, &sentences, 0, err);
+        status = read_sentences(a, &sentences, err);
     if (status == LC_OK)
         status = lc_place_array(&count, &tests, LC_MOST_TESTS, 1, err);
     for (size_t i = 0; i < count && status == LC_OK; ++i) {
@@ -359,6 +386,17 @@ static int is_json(const char *name)
     return length > 5 && strcmp(name + length - 5, ".json") == 0;
 }
 
+/* What an assignment names may lie beside it, such as its sentences. What is no JSON is told when it is read. */
+static int is_assignment(const char *folder, const char *name)
+{
+    char path[1500];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    json_t *o = is_json(name) ? json_load_file(path, 0, NULL) : NULL;
+    int has_tests = is_json(name) && (!o || json_object_get(o, "tests"));
+    json_decref(o);
+    return has_tests;
+}
+
 /* Calls `each` with every name, in the order of the alphabet. */
 static lc_status list_names(void (*each)(void *user, const char *folder, const char *name), void *user, lc_error *err)
 {
@@ -368,7 +406,7 @@ static lc_status list_names(void (*each)(void *user, const char *folder, const c
     if (!folder)
         return lc_fail(err, LC_BAD_INPUT, "no folder verify/assignments/ here or beside the program: give a path to a .json file");
     for (struct dirent *entry = readdir(folder); entry && count < 64; entry = readdir(folder))
-        if (is_json(entry->d_name) && strlen(entry->d_name) < sizeof names[0]) {
+        if (is_assignment(path, entry->d_name) && strlen(entry->d_name) < sizeof names[0]) {
             memset(names[count], 0, sizeof names[0]);
             memcpy(names[count++], entry->d_name, strlen(entry->d_name) - 5);
         }

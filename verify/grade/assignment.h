@@ -25,7 +25,8 @@ typedef struct lc_test {
     char name[48], title[128];
     lc_test_kind kind;
     char check[32];                     /* CHECK: which */
-    char scenes[LC_MOST_SCENES][64];    /* of the suites, families, or files */
+    char scenes[LC_MOST_SCENES][64];    /* of the suites, families, or files (assignment_files.h) */
+    int scene_lines[LC_MOST_SCENES];    /* where they stand in the assignment's file */
     int scene_count;
     int min_bounces, max_bounces;       /* MEAN, FINITE, VARIANCE: what is summed; CHECK: only claims of these; -1: all that there are */
     double points;
@@ -56,7 +57,7 @@ typedef struct lc_assignment {
     time_t due, published;           /* 0: never set */
     double late_per_day, late_most;  /* share of all points a begun day, and at most; 0: the course's own system does it */
     double cpu_seconds;              /* for the file, all tests together; more is TLE */
-    char sentences[256];             /* a translated table (sentences.h), beside the assignment's file; "": the program's */
+    char sentences[256];             /* a translated table (sentences.h, assignment_files.h); "": the program's */
     lc_test tests[LC_MOST_TESTS];
     int test_count;
 } lc_assignment;

@@ -66,7 +66,6 @@ static lc_status save_other(const lc_class *c, const lc_class_row *row, int is_f
     if (!r)
         return no_memory(err);
     options.seed = c->seed;
-    options.attempt = 1;
     options.student = row->student ? row->student->id : NULL;
     lc_grade_refused(r, c->options->assignment, row->handin->path ? row->handin->path : row->handin->name, &options, is_fault, why);
     lc_status status = save(c, row, r, err);
@@ -96,7 +95,8 @@ static int grade_one(void *user)
     options.on_test = on_test;
     options.user = t;
     options.student = t->row->student ? t->row->student->id : NULL;
-    options.submitted = t->row->handin->time;
+    options.submitted = t->row->submitted;
+    options.report_below = t->row->label;
     lc_status status = lc_grade_file(result, c->options->assignment, t->row->handin->path, &options, &err);
     if (status == LC_OK) {
         status = save(c, t->row, result, &err);
@@ -206,73 +206,11 @@ static lc_status make_folders(const lc_class *c, lc_error *err)
     return LC_OK;
 }
 
-/* FNV-1a; 0 where there is no such file. */
-static uint64_t digest_file(const char *path)
-{
-    unsigned char buffer[1 << 14];
-    uint64_t hash = 14695981039346656037ULL;
-    FILE *file = path ? fopen(path, "rb") : NULL;
-    if (!file)
-        return 0;
-    for (size_t n = fread(buffer, 1, sizeof buffer, file); n > 0; n = fread(buffer, 1, sizeof buffer, file))
-        for (size_t i = 0; i < n; ++i)
-            hash = (hash ^ buffer[i]) * 1099511628211ULL;
-    fclose(file);
-    return hash;
-}
-
-/* Of a name that is too long for a file, the beginning and a number. */
-static void make_label(lc_class_row *row, const char *name)
-{
-    uint64_t hash = 14695981039346656037ULL;
-    if (row->student) {
-        snprintf(row->label, sizeof row->label, "%s", row->student->pseudonym);
-    } else if (strlen(name) < sizeof row->label) {
-        snprintf(row->label, sizeof row->label, "%s", name);
-    } else {
-        for (const char *c = name; *c; ++c)
-            hash = (hash ^ (unsigned char)*c) * 1099511628211ULL;
-        snprintf(row->label, sizeof row->label, "%.*s~%016llx", LC_CLASS_LABEL - 20, name, (unsigned long long)hash);
-    }
-}
-
-static lc_status make_rows(lc_class *c, lc_error *err)
-{
-    const lc_class_options *o = c->options;
-    int students = o->roster ? o->roster->count : 0;
-    c->rows = calloc((size_t)(o->handins->count + students), sizeof *c->rows);
-    if (!c->rows)
-        return no_memory(err);
-    for (int i = 0; i < o->handins->count; ++i) {
-        lc_class_row *row = &c->rows[c->count++];
-        row->handin = &o->handins->items[i];
-        row->student = o->roster ? lc_roster_find(o->roster, row->handin->name) : NULL;
-        row->digest = digest_file(row->handin->path);
-        make_label(row, row->handin->name);
-        for (int k = 0; k < i; ++k)
-            if (row->student && c->rows[k].student == row->student)
-                return lc_fail(err, LC_BAD_INPUT, "%s and %s are both of student %s", c->rows[k].handin->name, row->handin->name,
-                               row->student->id);
-    }
-    for (int s = 0; s < students; ++s) {
-        int has_one = 0;
-        for (int i = 0; i < o->handins->count; ++i)
-            has_one |= c->rows[i].student == &o->roster->students[s];
-        if (has_one)
-            continue;
-        lc_class_row *row = &c->rows[c->count++];
-        row->student = &o->roster->students[s];
-        row->most_points = lc_assignment_points(o->assignment);
-        make_label(row, "");
-    }
-    return LC_OK;
-}
-
 static lc_status begin(lc_class *c, lc_error *err)
 {
     int found = 0;
-    lc_status status = make_rows(c, err);
-    c->assignment_digest = digest_file(c->options->assignment->path);
+    lc_status status = lc_class_make_rows(c, err);
+    c->assignment_digest = lc_class_digest(c->options->assignment->path);
     if (status == LC_OK)
         status = make_folders(c, err);
     if (status == LC_OK)
@@ -288,24 +226,34 @@ static lc_status begin(lc_class *c, lc_error *err)
     return status;
 }
 
-lc_status lc_class_grade(const lc_class_options *options, int *faults, lc_error *err)
+static void count_rows(lc_class_counts *n, const lc_class *c)
+{
+    *n = (lc_class_counts){0, 0, 0, 0, 0};
+    for (int i = 0; i < c->count; ++i) {
+        const lc_class_row *row = &c->rows[i];
+        n->left += row->handin && !row->is_graded && !row->is_fault;
+        n->faults += row->is_fault;
+        n->ungradable += row->is_graded && row->is_ungradable;
+        n->nobodys += c->options->roster && !row->student;
+        n->missing += !row->handin;
+    }
+}
+
+lc_status lc_class_grade(const lc_class_options *options, lc_class_counts *counts, lc_error *err)
 {
     lc_class c = {.options = options, .seed = options->grade.seed};
-    int left = 0, bad = 0;
+    lc_class_counts n;
     lc_status status = begin(&c, err);
     if (status == LC_OK)
         status = run(&c, err);
-    for (int i = 0; i < c.count; ++i) {
-        left += c.rows[i].handin && !c.rows[i].is_graded && !c.rows[i].is_fault;
-        bad += c.rows[i].is_fault;
-    }
-    if (status == LC_OK && left == 0) {
+    count_rows(&n, &c);
+    if (status == LC_OK && n.left == 0) {
         status = lc_class_compare(&c, err);
         if (status == LC_OK)
             status = lc_class_write_tables(&c, err);
     }
-    if (faults)
-        *faults = bad;
+    if (counts)
+        *counts = n;
     free(c.rows);
     return status;
 }

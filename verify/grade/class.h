@@ -25,7 +25,7 @@ typedef struct lc_class_options {
     const lc_roster *roster; /* NULL: none */
     const char *folder;      /* made if need be */
     const char *solutions;   /* folder of published solutions, for similarity; NULL: none */
-    lc_grade_options grade;  /* of each hand-in; `on_test`, `student`, `submitted` and `report` are ours */
+    lc_grade_options grade;  /* of each hand-in; `on_test`, `student`, `submitted` and `report_below` are ours */
     int at_once;             /* processes */
     int resume;              /* 1: goes on in a folder that has results; the seed is that one's */
     int shard, shards;       /* only hand-ins shard, shard + shards, ... by name; shards 1: all */
@@ -35,10 +35,18 @@ typedef struct lc_class_options {
     void *user;
 } lc_class_options;
 
-/* Grades what is not graded yet, then writes the tables (unless other shards' results are not there). LC_OK: each hand-in has a result, *faults of them
- * (may be NULL) being faults of ours, which the next run with `resume` grades again. LC_BAD_INPUT: the folder has results and `resume` is not
- * set, or they are of another assignment or seed. */
-lc_status lc_class_grade(const lc_class_options *options, int *faults, lc_error *err);
+typedef struct lc_class_counts {
+    int left;       /* hand-ins of other shards, without a result */
+    int faults;     /* of ours: the next run with `resume` grades them again */
+    int ungradable; /* no score, for a person to decide */
+    int nobodys;    /* hand-ins of nobody in the roster */
+    int missing;    /* students of the roster without a hand-in: 0 */
+} lc_class_counts;
+
+/* Grades what is not graded yet, then writes the tables (unless other shards' results are not there). LC_OK: each hand-in has a result, or its
+ * shard has not run. LC_BAD_INPUT: the folder has results and `resume` is not set, or they are of another assignment, of other tests of
+ * it, or of another seed; or somebody has handed in twice. `counts` may be NULL. */
+lc_status lc_class_grade(const lc_class_options *options, lc_class_counts *counts, lc_error *err);
 
 /* The seed of the class that is in the folder; untouched where none is. */
 void lc_class_read_seed(uint64_t *seed, const char *folder);

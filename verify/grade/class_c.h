@@ -14,7 +14,9 @@ typedef struct lc_class_row {
     char label[LC_CLASS_LABEL];
     const lc_handin *handin;   /* NULL: nothing was handed in */
     const lc_student *student; /* NULL: nobody of the roster, or no roster */
-    uint64_t digest;           /* of the file's content */
+    char id[LC_CLASS_LABEL];   /* in the gradebook */
+    time_t submitted;
+    uint64_t digest;           /* of what its result depends on */
     int is_graded;             /* 1: there is a complete result, and no fault of ours; then, and with `is_fault`, */
     int is_fault, is_ungradable;
     char code[8];
@@ -31,6 +33,11 @@ typedef struct lc_class {
     int count;
     int pending, done; /* of this run */
 } lc_class;
+
+/* class_rows.c. The file's content as a number, 0 where there is no such file. */
+uint64_t lc_class_digest(const char *path);
+/* A row for each hand-in and for each student without one. LC_BAD_INPUT: somebody has two. */
+lc_status lc_class_make_rows(lc_class *c, lc_error *err);
 
 /* FOLDER/kind/LABEL.suffix, or FOLDER/kind where the label is NULL; LC_BAD_INPUT where that is too long. */
 lc_status lc_class_path(char path[LC_CLASS_PATH], const lc_class *c, const char *kind, const char *label,

@@ -60,6 +60,11 @@ lc_status lc_class_read_row(lc_class_row *row, const lc_class *c, lc_error *err)
 
 /* ---- class.json -------------------------------------------------------------------------------------------------------- */
 
+/* The test that was asked for alone; "": all. */
+static const char *only_of(const lc_class *c) { return c->options->grade.only ? c->options->grade.only : ""; }
+
+static const char *tests_of(const char *only) { return only[0] ? only : "all tests"; }
+
 lc_status lc_class_write_index(const lc_class *c, lc_error *err)
 {
     char path[LC_CLASS_PATH], seed[32], digest[32];
@@ -72,9 +77,9 @@ lc_status lc_class_write_index(const lc_class *c, lc_error *err)
             json_decref(handins), handins = NULL;
     }
     number_text(digest, c->assignment_digest);
-    json_t *o = json_pack("{s:s, s:i, s:s, s:s, s:s, s:s, s:o}", "format", "lightcheck-class", "version", 1, "program",
-                          "lightcheck " LC_VERSION, "assignment", c->options->assignment->name, "assignment_digest", digest,
-                          "seed", seed, "handins", handins);
+    json_t *o = json_pack("{s:s, s:i, s:s, s:s, s:s, s:s, s:s, s:o}", "format", "lightcheck-class", "version", 1, "program",
+                          "lightcheck " LC_VERSION, "assignment", c->options->assignment->name, "assignment_digest", digest, "only",
+                          only_of(c), "seed", seed, "handins", handins);
     if (!o)
         return no_memory(err);
     lc_status status = lc_class_path(path, c, "class.json", NULL, NULL, err);
@@ -119,6 +124,9 @@ lc_status lc_class_read_index(int *found, lc_class *c, lc_error *err)
         status = lc_fail(err, LC_BAD_INPUT, "%s is not what this program writes: name another folder", path);
     else if (strcmp(text_of(o, "assignment_digest"), digest) != 0 || strcmp(text_of(o, "program"), "lightcheck " LC_VERSION) != 0)
         status = lc_fail(err, LC_BAD_INPUT, "%s: results of another assignment, or by another version: name another folder", path);
+    else if (strcmp(text_of(o, "only"), only_of(c)) != 0)
+        status = lc_fail(err, LC_BAD_INPUT, "%s: results of %s, not of %s: name another folder", path, tests_of(text_of(o, "only")),
+                         tests_of(only_of(c)));
     else if (!c->options->resume && c->options->shards > 1 && strtoull(text_of(o, "seed"), NULL, 10) != c->seed)
         status = lc_fail(err, LC_BAD_INPUT, "%s: shards of another seed, %s", path, text_of(o, "seed"));
     else if (c->options->resume || c->options->shards > 1) {
@@ -240,17 +248,13 @@ static void write_gradebook(FILE *out, const lc_class *c)
     fputs("assignment,duedate,timestamp,student_id,last_name,first_name,email,raw_score,late_submission_penalty,score,max_score\n", out);
     for (int i = 0; i < c->count; ++i) {
         const lc_class_row *row = &c->rows[i];
-        char stem[LC_CLASS_LABEL];
         if (c->options->roster && !row->student)
             continue; /* nobody's: in class.csv only */
-        snprintf(stem, sizeof stem, "%s", row->label);
-        if (strrchr(stem, '.') && strrchr(stem, '.') != stem)
-            *strrchr(stem, '.') = 0;
-        const char *const texts[] = {row->student ? row->student->id : stem, row->student ? row->student->last_name : "",
+        const char *const texts[] = {row->id, row->student ? row->student->last_name : "",
                                      row->student ? row->student->first_name : "", row->student ? row->student->email : ""};
         when[0] = 0;
         if (row->handin)
-            strftime(when, sizeof when, "%Y-%m-%d %H:%M:%S", gmtime(&row->handin->time));
+            strftime(when, sizeof when, "%Y-%m-%d %H:%M:%S", gmtime(&row->submitted));
         lc_csv_field(out, a->name);
         fprintf(out, ",%s,%s", due, when);
         for (int k = 0; k < 4; ++k) {

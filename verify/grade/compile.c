@@ -13,6 +13,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/stat.h>
@@ -35,26 +36,20 @@ typedef struct job {
     char folder[PATH_SIZE - 64];
 } job;
 
-static int ends_with_one_of(const char *path, const char *const *ends)
+static int ends_with(const char *path, const char *end, int (*compare)(const char *a, const char *b))
 {
     size_t length = strlen(path);
-    for (; *ends; ++ends)
-        if (length > strlen(*ends) && strcmp(path + length - strlen(*ends), *ends) == 0)
-            return 1;
-    return 0;
+    return length > strlen(end) && compare(path + length - strlen(end), end) == 0;
 }
 
+/* `.C` is C++ by the custom of cc and make; the other names mean the same in any case, as files from Windows come. */
 static int is_cpp(const char *path)
 {
-    static const char *const ends[] = {".cc", ".cpp", ".cxx", NULL};
-    return ends_with_one_of(path, ends);
+    return ends_with(path, ".C", strcmp) || ends_with(path, ".cc", strcasecmp) || ends_with(path, ".cpp", strcasecmp) ||
+           ends_with(path, ".cxx", strcasecmp);
 }
 
-int lc_is_source(const char *path)
-{
-    static const char *const ends[] = {".c", NULL};
-    return is_cpp(path) || ends_with_one_of(path, ends);
-}
+int lc_is_source(const char *path) { return is_cpp(path) || ends_with(path, ".c", strcmp); }
 
 /* ---- the compiler ------------------------------------------------------------------------------------------------ */
 
@@ -80,6 +75,8 @@ static void write_command(const char *words[MOST_WORDS], char texts[3][PATH_SIZE
     words[n++] = texts[0];
     words[n++] = "-o";
     words[n++] = texts[1];
+    words[n++] = "-x"; /* of .CXX and .CC not every compiler knows what they are */
+    words[n++] = cpp ? "c++" : "c";
     words[n++] = texts[2];
     words[n++] = "-lm";
     words[n] = NULL;

@@ -28,7 +28,7 @@ typedef struct lc_compiled {
  * error, `messages` all. LC_FAULT: no compiler, no folder, or the like. `options` may be NULL. */
 lc_status lc_compile(lc_compiled *out, const char *path, const lc_compile_options *options, lc_error *err);
 
-/* 1 for a name that ends as source code (.c .cc .cpp .cxx) does. */
+/* 1 for a name that ends as source code does: .c is C; .C, and .cc .cpp .cxx in any case, are C++. */
 int lc_is_source(const char *path);
 
 #endif

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "io/outfile.h"
+#include "verify/report/plain.h"
 
 const lc_format lc_formats[] = {
     {"json", lc_result_json},
@@ -77,41 +78,60 @@ json_t *lc_json_taken(char *text)
 
 int lc_result_shows(const lc_test_result *test, int teacher) { return teacher || lc_test_is_open(test); }
 
+/* NULL where it was not written to its end. */
+static char *close_text(FILE *out, char **text)
+{
+    int failed = ferror(out);
+    if (fclose(out) == 0 && !failed)
+        return *text;
+    free(*text);
+    return NULL;
+}
+
 char *lc_result_feedback(const lc_test_result *t, int is_public)
 {
     int is_open = !is_public || lc_test_is_open(t);
-    size_t size = sizeof t->sentence + sizeof t->hint + sizeof t->reproduce + sizeof t->withheld + 64;
-    char *text = malloc(size);
-    if (!text)
+    char *text = NULL;
+    size_t size;
+    FILE *out = open_memstream(&text, &size);
+    if (!out)
         return NULL;
-    if (t->status == LC_TEST_PENDING)
-        snprintf(text, size, "Not judged yet.");
-    else
-        snprintf(text, size, "%s%s%s%s%s", is_open ? t->sentence : t->shown, t->hint[0] ? "\nHint: " : "", t->hint,
-                 !is_open ? "\n" : t->reproduce[0] ? "\nAgain: " : "", is_open ? t->reproduce : t->withheld);
-    return text;
+    if (t->status == LC_TEST_PENDING) {
+        fputs("Not judged yet.", out);
+    } else {
+        lc_plain(out, is_open ? t->sentence : t->shown);
+        fputs(t->hint[0] ? "\nHint: " : "", out);
+        lc_plain(out, t->hint);
+        fputs(!is_open ? "\n" : t->reproduce[0] ? "\nAgain: " : "", out);
+        lc_plain(out, is_open ? t->reproduce : t->withheld);
+    }
+    return close_text(out, &text);
 }
 
 char *lc_result_summary(const lc_grade_result *r)
 {
-    size_t size = sizeof r->message + sizeof r->warnings + 512;
-    char *text = malloc(size);
-    if (!text)
+    char *text = NULL;
+    size_t size;
+    FILE *out = open_memstream(&text, &size);
+    if (!out)
         return NULL;
-    size_t used = 0;
-    if (r->is_ungradable)
-        used = (size_t)snprintf(text, size, "This could not be graded, and is no attempt. %s\n", r->message);
-    else if (r->is_fault)
-        used = (size_t)snprintf(text, size, "A fault of ours, not of your file; it has to be graded again. %s\n", r->message);
+    fputs(r->is_ungradable ? "This could not be graded, and is no attempt. "
+          : r->is_fault    ? "A fault of ours, not of your file; it has to be graded again. "
+                           : "",
+          out);
+    if (r->is_ungradable || r->is_fault)
+        lc_plain(out, r->message);
     else
-        used = (size_t)snprintf(text, size, "%g of %g points.%s\n", r->points, r->most_points,
-                                r->done < r->test_count ? " Not all tests are judged yet." : "");
+        fprintf(out, "%g of %g points.%s", r->points, r->most_points, r->done < r->test_count ? " Not all tests are judged yet." : "");
+    fputc('\n', out);
     if (r->late_penalty > 0)
-        used += (size_t)snprintf(text + used, size - used, "%g days late: %g points less.\n", r->late_days, r->late_penalty);
-    if (r->warnings[0])
-        used += (size_t)snprintf(text + used, size - used, "The compiler says:\n%s\n", r->warnings);
-    snprintf(text + used, size - used, "Seed %llu; jail: %s.", (unsigned long long)r->seed, r->jail);
-    return text;
+        fprintf(out, "%g days late: %g points less.\n", r->late_days, r->late_penalty);
+    if (r->warnings[0]) {
+        fputs("The compiler says:\n", out);
+        lc_plain_lines(out, r->warnings, "| ");
+    }
+    fprintf(out, "Seed %llu; jail: %s.", (unsigned long long)r->seed, r->jail);
+    return close_text(out, &text);
 }
 
 /* ---- our own ----------------------------------------------------------------------------------------------------- */

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  *
  * formats.h: a graded hand-in as others read it. Each format writes the whole result, judged to its end or not: a test that is not
- * judged yet says so. Bytes that are no UTF-8 become '?', numbers that are none become null, or 0 where null is not known.
+ * judged yet says so. Bytes that are no UTF-8 become '?', numbers that are none become null, or 0 where null is not known. What other
+ * systems show as text has no control characters (verify/report/plain.h): some of them show colours, and more.
  */
 #ifndef LC_FORMATS_H
 #define LC_FORMATS_H

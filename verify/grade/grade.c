@@ -11,6 +11,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "verify/grade/assignment_files.h"
 #include "verify/grade/grading.h"
 #include "verify/grade/plugin.h"
 
@@ -209,11 +210,10 @@ static void set_late(lc_grading *g)
     r->late_penalty = fmin(a->late_most, a->late_per_day * r->late_days) * lc_assignment_points(a);
 }
 
-static void set_labels(lc_grading *g)
+static void set_labels(lc_grade_result *r, const lc_sentences *sentences)
 {
     static const char *const ids[LC_LABELS] = {"label_hint",    "label_pictures", "label_again", "label_ungradable",
                                                "label_printed", "label_fault",    "label_score", "label_late"};
-    lc_grade_result *r = g->result;
     lc_words words = {.count = 0};
     lc_words_set(&words, "score", "%.4g", r->score);
     lc_words_set(&words, "points", "%.4g", r->most_points);
@@ -221,7 +221,7 @@ static void set_labels(lc_grading *g)
     lc_words_set(&words, "penalty", "%.4g", r->late_penalty);
     lc_words_set(&words, "days", "%.0f", r->late_days);
     for (int i = 0; i < LC_LABELS; ++i)
-        lc_say(r->labels[i], sizeof r->labels[i], g->sentences, ids[i], &words);
+        lc_say(r->labels[i], sizeof r->labels[i], sentences, ids[i], &words);
 }
 
 /* Whose, of what, by which seed. */
@@ -237,6 +237,14 @@ static void start(lc_grade_result *r, const lc_assignment *a, const char *file, 
     r->attempt = o->attempt > 0 ? o->attempt : 1;
 }
 
+static lc_status open_sentences(lc_sentences **out, const lc_assignment *a, lc_error *err)
+{
+    char path[LC_PATH_SIZE];
+    if (a->sentences[0])
+        lc_assignment_find(path, a, a->sentences);
+    return lc_sentences_open(out, a->sentences[0] ? path : NULL, err);
+}
+
 void lc_grade_refused(lc_grade_result *out, const lc_assignment *assignment, const char *file,
                       const lc_grade_options *options, int is_fault, const char *why)
 {
@@ -246,6 +254,20 @@ void lc_grade_refused(lc_grade_result *out, const lc_assignment *assignment, con
     out->is_ungradable = !is_fault;
     out->code = is_fault ? LC_JAIL_IE : LC_JAIL_CE;
     out->most_points = lc_assignment_points(assignment);
+    lc_sentences *sentences = NULL;
+    lc_error none; /* without the course's words it is said in the program's */
+    if (open_sentences(&sentences, assignment, &none) != LC_OK)
+        sentences = NULL;
+    set_labels(out, sentences);
+    lc_sentences_close(sentences);
+}
+
+static lc_status fail_no_test(const lc_assignment *a, const char *name, lc_error *err)
+{
+    char list[LC_MOST_TESTS * sizeof a->tests[0].name] = "";
+    for (int i = 0; i < a->test_count; ++i)
+        snprintf(list + strlen(list), sizeof list - strlen(list), "%s%s", i ? ", " : "", a->tests[i].name);
+    return lc_fail(err, LC_BAD_INPUT, "%s: there is no test '%.60s'; it has: %s", a->path, name, list);
 }
 
 static lc_status start_result(lc_grading *g, lc_error *err)
@@ -265,9 +287,9 @@ static lc_status start_result(lc_grading *g, lc_error *err)
         ++r->test_count;
     }
     if (r->test_count == 0)
-        return lc_fail(err, LC_BAD_INPUT, "%s: there is no test '%s'", a->path, o->only);
+        return fail_no_test(a, o->only, err);
     set_late(g);
-    set_labels(g);
+    set_labels(g->result, g->sentences);
     return LC_OK;
 }
 
@@ -363,7 +385,7 @@ static lc_status give_hints(lc_grading *g, lc_error *err)
     const lc_assignment *a = g->assignment;
     lc_grade_result *r = g->result;
     lc_test_result *first = NULL;
-    if (r->attempt < a->hint_after_attempts || r->is_fault || r->is_ungradable)
+    if ((r->attempt < a->hint_after_attempts && !g->options->is_final) || r->is_fault || r->is_ungradable)
         return LC_OK;
     for (int i = 0; i < r->test_count; ++i) {
         lc_test_result *t = &r->tests[i];
@@ -399,11 +421,31 @@ static lc_status judge_all(lc_grading *g, lc_error *err)
             status = judge_test(g, i, err);
         ++r->done;
         add_up(r);
-        set_labels(g);
+        set_labels(g->result, g->sentences);
         if (status == LC_OK)
             status = tell(g, err);
     }
     return status == LC_OK && !g->options->adapter ? give_hints(g, err) : status;
+}
+
+/* Whether anything is claimed does not depend on what the file is: the reference stands for it. */
+lc_status lc_grade_plan(const lc_assignment *assignment, const lc_grade_options *options, lc_error *err)
+{
+    int has_test = !options->only;
+    for (int i = 0; i < assignment->test_count; ++i)
+        has_test |= options->only && strcmp(options->only, assignment->tests[i].name) == 0;
+    if (!has_test)
+        return fail_no_test(assignment, options->only, err);
+    lc_grading *g = calloc(1, sizeof *g);
+    if (!g)
+        return lc_fail(err, LC_FAULT, "out of memory for a grading");
+    g->assignment = assignment;
+    g->options = options;
+    g->reference = g->estimator = lc_right_estimator(assignment->reference);
+    lc_status status = lc_grading_plan(g, err);
+    lc_grading_release(g);
+    free(g);
+    return status;
 }
 
 lc_status lc_grade_file(lc_grade_result *out, const lc_assignment *assignment, const char *path,
@@ -411,7 +453,6 @@ lc_status lc_grade_file(lc_grade_result *out, const lc_assignment *assignment, c
 {
     lc_grading *g = calloc(1, sizeof *g);
     double start = now();
-    char table[1400] = "";
     int refused = 0;
     if (!g)
         return lc_fail(err, LC_FAULT, "out of memory for a grading");
@@ -421,11 +462,7 @@ lc_status lc_grade_file(lc_grade_result *out, const lc_assignment *assignment, c
     g->result = out;
     g->cpu_left = assignment->cpu_seconds;
     g->reference = lc_right_estimator(assignment->reference);
-    const char *slash = strrchr(assignment->path, '/');
-    if (assignment->sentences[0])
-        snprintf(table, sizeof table, "%.*s%s", slash ? (int)(slash + 1 - assignment->path) : 0, assignment->path,
-                 assignment->sentences);
-    lc_status status = lc_sentences_open(&g->sentences, table[0] ? table : NULL, err);
+    lc_status status = open_sentences(&g->sentences, assignment, err);
     if (status == LC_OK)
         status = start_result(g, err);
     if (status == LC_OK)
@@ -437,7 +474,7 @@ lc_status lc_grade_file(lc_grade_result *out, const lc_assignment *assignment, c
     if (status == LC_OK) {
         add_up(out);
         out->seconds = now() - start;
-        set_labels(g);
+        set_labels(g->result, g->sentences);
         status = tell(g, err);
     }
     lc_grading_release(g);

@@ -17,8 +17,10 @@ typedef struct lc_grade_options {
     int is_teacher;           /* 1: nothing is withheld */
     const char *only;         /* only this test, and without its prerequisites; NULL: all */
     const char *report;       /* folder for pictures, made if need be; NULL: none */
+    const char *report_below; /* folder in it, for those of this file alone; NULL: none */
     const char *student;      /* id, or NULL */
     int attempt;              /* counted from 1, for hint_after_attempts; 0: 1 */
+    int is_final;             /* 1: no attempt follows, so that hints are given whatever `attempt` is */
     time_t submitted;         /* for the late policy; 0: not known, never late */
     time_t now;               /* what is withheld until a date; 0: the clock's */
     const lc_estimator *estimator; /* graded instead of a file: for the check of an assignment; NULL: the file */
@@ -33,6 +35,10 @@ typedef struct lc_grade_options {
 
 /* seed 1, all cores, jailed, attempt 1, the program "lightcheck". `load` is the caller's to set. */
 void lc_grade_options_init(lc_grade_options *options);
+
+/* Whether an assignment can be graded by: draws and builds the scenes of this seed, and plans what is claimed over them; renders
+ * nothing. LC_BAD_INPUT with file:line and what is wrong. To be asked once, before the first file. */
+lc_status lc_grade_plan(const lc_assignment *assignment, const lc_grade_options *options, lc_error *err);
 
 /* Fills `out`, whatever the file does: a file that does not compile, a hang, a cheat are results, not errors. LC_OK then; lc_grade_status(out) has the
  * verdict. An error (LC_BAD_INPUT: no such file, scene or test; LC_FAULT) says that there is no result. One grading a process at a time; it

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "verify/grade/assignment_files.h"
 #include "verify/grade/grading.h"
 
 uint64_t lc_grading_seed(const lc_grade_options *options, lc_visibility visibility)
@@ -64,14 +65,23 @@ static lc_status claim_mean(lc_job *job, const lc_scene *scene, const lc_grading
     return LC_OK;
 }
 
-static lc_status plan_scene(lc_job *job, const char *name, const lc_grading *g, lc_error *err)
+/* "FILE:LINE: test NAME: " and the message: where the scene stands in the assignment. */
+static lc_status fail_there(const lc_grading *g, const lc_test *test, int scene, const char *message, lc_error *err)
+{
+    return lc_fail(err, LC_BAD_INPUT, "%s:%d: test %s: %s", g->assignment->path, test->scene_lines[scene], test->name, message);
+}
+
+static lc_status plan_scene(lc_job *job, int which, const lc_grading *g, lc_error *err)
 {
     const lc_test *test = job->test;
+    const char *name = test->scenes[which];
+    char path[LC_PATH_SIZE], text[400] = "";
     lc_scene *scene;
+    lc_error why = {""};
     int before = job->claims.count;
-    lc_status status = lc_suite_scene(&scene, name, job->seed, g->options->load, err);
+    lc_status status = lc_suite_scene(&scene, lc_assignment_scene(path, g->assignment, name), job->seed, g->options->load, &why);
     if (status != LC_OK)
-        return status;
+        return status == LC_BAD_INPUT ? fail_there(g, test, which, why.text, err) : lc_fail(err, status, "%s", why.text);
     job->scenes[job->scene_count++] = scene;
     if (test->kind == LC_KIND_MEAN)
         return claim_mean(job, scene, g, err);
@@ -80,16 +90,14 @@ static lc_status plan_scene(lc_job *job, const char *name, const lc_grading *g, 
     const lc_check *check = check_of(test->check);
     status = check->plan(check, &job->claims, scene, g->reference, err);
     choose(job, before, g);
-    if (status == LC_OK && job->claims.count == before)
-        return lc_fail(err, LC_BAD_INPUT, "%s: test %s: the check %s says nothing about %s over %s%s", g->assignment->path,
-                       test->name, test->check, g->reference->name, name,
-                       test->relation[0] || test->max_bounces >= 0 ? " with this relation and these bounces" : "");
+    if (job->claims.count == before)
+        snprintf(text, sizeof text, "the check %s says nothing about %s over %s%s", test->check, g->reference->name, name,
+                 test->relation[0] || test->max_bounces >= 0 ? " with this relation and these bounces" : "");
     for (int i = before; i < job->claims.count && status == LC_OK; ++i)
         if (job->claims.items[i].max_bounces > g->assignment->bounces)
-            status = lc_fail(err, LC_BAD_INPUT, "%s: test %s: over %s the check %s asks for %d bounces, the assignment for %d only",
-                             g->assignment->path, test->name, name, test->check, job->claims.items[i].max_bounces,
-                             g->assignment->bounces);
-    return status;
+            snprintf(text, sizeof text, "over %s the check %s asks for %d bounces, the assignment for %d only", name, test->check,
+                     job->claims.items[i].max_bounces, g->assignment->bounces);
+    return status == LC_OK && text[0] ? fail_there(g, test, which, text, err) : status;
 }
 
 lc_status lc_grading_plan(lc_grading *g, lc_error *err)
@@ -100,7 +108,7 @@ lc_status lc_grading_plan(lc_grading *g, lc_error *err)
         job->test = &g->assignment->tests[i];
         job->seed = lc_test_seed(lc_grading_seed(g->options, job->test->visibility), job->test->name);
         for (int s = 0; s < job->test->scene_count && status == LC_OK; ++s)
-            status = plan_scene(job, job->test->scenes[s], g, err);
+            status = plan_scene(job, s, g, err);
         g->rows += job->test->kind == LC_KIND_VARIANCE ? job->scene_count : job->claims.count;
     }
     return status;

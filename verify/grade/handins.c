@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 
 #include "verify/grade/compile.h"
@@ -40,7 +41,7 @@ static lc_status add(lc_handins *out, const char *name, const char *path, const 
         return no_memory(err);
     out->items = items;
     lc_handin *h = &items[out->count++];
-    *h = (lc_handin){copy_text(name), path ? copy_text(path) : NULL, path ? NULL : copy_text(why), 0, when};
+    *h = (lc_handin){copy_text(name), path ? copy_text(path) : NULL, path ? NULL : copy_text(why), 0, 0, when};
     return h->name && (path ? h->path : h->why) ? LC_OK : no_memory(err);
 }
 
@@ -109,23 +110,76 @@ static lc_status add_folder(lc_handins *out, const char *name, const char *folde
 
 /* ---- a folder of hand-ins --------------------------------------------------------------------------------------------- */
 
-static lc_status add_all(lc_handins *out, const char *folder, int adapters, lc_error *err)
+/* What no student has put there. */
+static int is_left_by_a_system(const char *name)
+{
+    static const char *const names[] = {"index.html", "__MACOSX", "Thumbs.db", "desktop.ini"};
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; ++i)
+        if (strcasecmp(name, names[i]) == 0)
+            return 1;
+    return name[0] == '.';
+}
+
+static int is_among(const char *const *paths, const struct stat *info)
+{
+    struct stat other;
+    for (; paths && *paths; ++paths)
+        if (stat(*paths, &other) == 0 && other.st_dev == info->st_dev && other.st_ino == info->st_ino)
+            return 1;
+    return 0;
+}
+
+static int is_archive(const char *name)
+{
+    static const char *const ends[] = {".zip", ".tar", ".gz", ".tgz", ".xz", ".bz2", ".7z", ".rar"};
+    const char *dot = strrchr(name, '.');
+    for (size_t i = 0; dot && i < sizeof ends / sizeof ends[0]; ++i)
+        if (strcasecmp(dot, ends[i]) == 0)
+            return 1;
+    return 0;
+}
+
+/* What was handed in, and is neither a source file nor a folder. */
+static lc_status add_other(lc_handins *out, const char *name, const struct stat *info, lc_error *err)
+{
+    char why[512];
+    const char *is = !info                       ? "cannot be read"
+                     : S_ISLNK(info->st_mode)    ? "is a link, and none is followed"
+                     : !S_ISREG(info->st_mode)   ? "is no regular file"
+                     : is_archive(name)          ? "is an archive, and none is unpacked"
+                                                 : "is no source file";
+    snprintf(why, sizeof why, "%.200s %s; expected one source file (.c, .cc, .cpp, .cxx)", name, is);
+    lc_status status = add(out, name, NULL, why, info ? info->st_mtime : 0, err);
+    if (status == LC_OK)
+        out->items[out->count - 1].is_other = 1;
+    return status;
+}
+
+static lc_status add_entry(lc_handins *out, const char *folder, const char *name, const lc_handins_options *options, lc_error *err)
+{
+    char path[PATH_SIZE];
+    struct stat info;
+    int n = snprintf(path, sizeof path, "%s/%s", folder, name);
+    if (n >= PATH_SIZE || lstat(path, &info) != 0)
+        return add_other(out, name, NULL, err);
+    if (is_among(options->except, &info))
+        return LC_OK;
+    if (S_ISREG(info.st_mode) && lc_is_source(name))
+        return add(out, name, path, NULL, info.st_mtime, err);
+    if (S_ISDIR(info.st_mode))
+        return add_folder(out, name, path, info.st_mtime, options->adapters, err);
+    return add_other(out, name, &info, err);
+}
+
+static lc_status add_all(lc_handins *out, const char *folder, const lc_handins_options *options, lc_error *err)
 {
     lc_status status = LC_OK;
     DIR *dir = opendir(folder);
     if (!dir)
         return lc_fail(err, LC_BAD_INPUT, "%s: cannot read: %s", folder, strerror(errno));
-    for (struct dirent *e = readdir(dir); e && status == LC_OK; e = readdir(dir)) {
-        char path[PATH_SIZE];
-        struct stat info;
-        int n = snprintf(path, sizeof path, "%s/%s", folder, e->d_name);
-        if (e->d_name[0] == '.' || n >= PATH_SIZE || lstat(path, &info) != 0)
-            continue;
-        if (S_ISREG(info.st_mode) && lc_is_source(e->d_name))
-            status = add(out, e->d_name, path, NULL, info.st_mtime, err);
-        else if (S_ISDIR(info.st_mode))
-            status = add_folder(out, e->d_name, path, info.st_mtime, adapters, err);
-    }
+    for (struct dirent *e = readdir(dir); e && status == LC_OK; e = readdir(dir))
+        if (!is_left_by_a_system(e->d_name))
+            status = add_entry(out, folder, e->d_name, options, err);
     closedir(dir);
     return status;
 }
@@ -136,9 +190,19 @@ static int by_name(const void *a, const void *b)
     return strcmp(x->name, y->name);
 }
 
-lc_status lc_handins_find(lc_handins *out, const char *const *paths, int count, int adapters, lc_error *err)
+static int has_one_to_grade(const lc_handins *h)
 {
+    for (int i = 0; i < h->count; ++i)
+        if (!h->items[i].is_other)
+            return 1;
+    return 0;
+}
+
+lc_status lc_handins_find(lc_handins *out, const char *const *paths, int count, const lc_handins_options *options, lc_error *err)
+{
+    static const lc_handins_options defaults = {0, NULL};
     lc_status status = LC_OK;
+    options = options ? options : &defaults;
     *out = (lc_handins){NULL, 0};
     for (int i = 0; i < count && status == LC_OK; ++i) {
         char name[PATH_SIZE];
@@ -147,13 +211,13 @@ lc_status lc_handins_find(lc_handins *out, const char *const *paths, int count, 
         if (stat(paths[i], &info) != 0)
             status = lc_fail(err, LC_BAD_INPUT, "%s: cannot read: %s", paths[i], strerror(errno));
         else if (S_ISDIR(info.st_mode))
-            status = add_all(out, paths[i], adapters, err);
+            status = add_all(out, paths[i], options, err);
         else if (lc_is_source(paths[i]))
             status = add(out, name, paths[i], NULL, info.st_mtime, err);
         else
             status = lc_fail(err, LC_BAD_INPUT, "%s: expected a source file (.c, .cc, .cpp, .cxx) or a folder", paths[i]);
     }
-    if (status == LC_OK && out->count == 0)
+    if (status == LC_OK && !has_one_to_grade(out))
         status = lc_fail(err, LC_BAD_INPUT, "%s: no hand-in: expected source files (.c, .cc, .cpp, .cxx), or folders with one each",
                          count ? paths[0] : "");
     if (status == LC_OK)

@@ -14,7 +14,8 @@ typedef struct lc_handin {
     char *path; /* of the source file, or adapter, to be graded; NULL: there is none, and */
     char *why;  /* this is why, for its author */
     int is_adapter;
-    time_t time; /* when the file, or the folder, was last changed */
+    int is_other; /* 1: neither source file nor folder, such as a text, an archive or a link. Work all the same, where its author has no other */
+    time_t time;  /* when the file, or the folder, was last changed */
 } lc_handin;
 
 typedef struct lc_handins {
@@ -22,11 +23,17 @@ typedef struct lc_handins {
     int count;
 } lc_handins;
 
-/* A source file (.c .cc .cpp .cxx) is a hand-in. Of a folder each source file in it is one, and each folder in it, which is to hold one
- * source file, somewhere in it; what begins with a dot, and any other file, is passed over. With `adapters`, an executable called
- * `adapter` or `adapter.*` in such a folder is graded in place of a source file: it will run with the caller's rights. No link is
- * followed. LC_BAD_INPUT: there is no such file, no hand-in at all, or two of one name. */
-lc_status lc_handins_find(lc_handins *out, const char *const *paths, int count, int adapters, lc_error *err);
+typedef struct lc_handins_options {
+    int adapters;              /* 1: an executable called `adapter` or `adapter.*` in a folder is graded in place of a source file: it will run
+                                * with the caller's rights */
+    const char *const *except; /* paths of what is no hand-in, wherever it lies: the class's own files; ends with NULL. NULL: none */
+} lc_handins_options;
+
+/* A source file (compile.h) is a hand-in. Of a folder everything in it is one: each source file; each folder, which is to hold one source
+ * file, somewhere in it; and anything else, which cannot be graded, but was handed in. Only what begins with a dot, and what
+ * systems leave in folders (index.html, __MACOSX, Thumbs.db, desktop.ini), is passed over. No link is followed. `options` may be NULL.
+ * LC_BAD_INPUT: there is no such file, nothing that could be graded, or two of one name. */
+lc_status lc_handins_find(lc_handins *out, const char *const *paths, int count, const lc_handins_options *options, lc_error *err);
 /* The folder itself is one hand-in. */
 lc_status lc_handins_find_one(lc_handins *out, const char *folder, lc_error *err);
 void lc_handins_release(lc_handins *handins);

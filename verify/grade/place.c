@@ -258,13 +258,17 @@ static int64_t days_from_date(int year, int month, int day)
            (1969 / 4 - 1969 / 100 + 1969 / 400);
 }
 
-lc_status lc_place_time(int64_t *out, const lc_place *place, lc_error *err)
+static int days_in_month(int year, int month)
+{
+    static const int days[] = {31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
+    int is_leap = (year % 4 == 0 && year % 100 != 0) || year % 400 == 0;
+    return days[month - 1] + (month == 2 && is_leap);
+}
+
+const char *lc_read_moment(int64_t *out, const char *text)
 {
     int year, month, day, hour, minute, second, east_hour = 0, east_minute = 0, end = 0;
-    char sign = 'Z', text[40] = "";
-    lc_status status = lc_place_string(text, sizeof text, place, 0, err);
-    if (status != LC_OK || !place->value)
-        return status;
+    char sign = 'Z';
     int read = sscanf(text, "%4d-%2d-%2dT%2d:%2d:%2d%n", &year, &month, &day, &hour, &minute, &second, &end), more = 0;
     if (read == 6 && strcmp(text + end, "Z") != 0) {
         read = sscanf(text + end, "%c%2d:%2d%n", &sign, &east_hour, &east_minute, &more) == 3 ? 6 : 0;
@@ -275,10 +279,20 @@ lc_status lc_place_time(int64_t *out, const lc_place *place, lc_error *err)
     if (read != 6 || (size_t)end != strlen(text) || !strchr("Z+-", sign) || year < 1970 || year > 9999 || month < 1 ||
         month > 12 || day < 1 || day > 31 || hour < 0 || hour > 23 || minute < 0 || minute > 59 || second < 0 ||
         second > 60 || east_hour < 0 || east_hour > 14 || east_minute < 0 || east_minute > 59)
-        return lc_place_fail(err, place, "expected a moment with its zone, as 2026-12-01T23:59:00Z or 2026-12-01T23:59:00+01:00");
+        return "expected a moment with its zone, as 2026-12-01T23:59:00Z or 2026-12-01T23:59:00+01:00";
+    if (day > days_in_month(year, month))
+        return "its month has no such day";
     int east = (60 * east_hour + east_minute) * (sign == '-' ? -1 : 1);
     *out = days_from_date(year, month, day) * 86400 + 3600 * hour + 60 * (minute - east) + second;
-    return LC_OK;
+    return NULL;
+}
+
+lc_status lc_place_time(int64_t *out, const lc_place *place, lc_error *err)
+{
+    char text[40] = "";
+    lc_status status = lc_place_string(text, sizeof text, place, 0, err);
+    const char *why = status == LC_OK && place->value ? lc_read_moment(out, text) : NULL;
+    return why ? lc_place_fail(err, place, "%s", why) : status;
 }
 
 lc_status lc_place_array(size_t *count, const lc_place *place, size_t most, int required, lc_error *err)

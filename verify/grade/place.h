@@ -49,7 +49,8 @@ lc_status lc_place_number(double *out, const lc_place *place, double least, doub
 lc_status lc_place_int(int *out, const lc_place *place, int least, int most, int required, lc_error *err);
 /* One of "a|b|c": its number. */
 lc_status lc_place_choice(int *out, const lc_place *place, const char *choices, int required, lc_error *err);
-/* A moment, ISO 8601 with a zone: 2026-12-01T23:59:00Z or ...+01:00. */
+/* A moment, ISO 8601 with a zone: 2026-12-01T23:59:00Z or ...+01:00. Seconds since 1970 UTC; what is wrong, or NULL. */
+const char *lc_read_moment(int64_t *out, const char *text);
 lc_status lc_place_time(int64_t *out, const lc_place *place, lc_error *err);
 /* The number of elements, 0 where there is no value. */
 lc_status lc_place_array(size_t *count, const lc_place *place, size_t most, int required, lc_error *err);

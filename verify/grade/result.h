@@ -74,7 +74,7 @@ typedef struct lc_test_result {
     char because[48];        /* SKIPPED: the test that did not pass */
     char reproduce[LC_COMMAND]; /* a command line */
     char withheld[128];      /* why `reproduce` and the numbers are not shown yet, in a sentence; "": they are */
-    char pictures[3][256];   /* paths below the report's folder: yours, reference, difference; "": none was written */
+    char pictures[3][320];   /* paths below the report's folder: yours, reference, difference; "": none was written */
     lc_measured measured;
     double seconds;          /* of the clock */
     double cpu_seconds;      /* of the jail's workers */

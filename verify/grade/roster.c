@@ -7,14 +7,15 @@
 #include <string.h>
 
 #include "verify/grade/csv.h"
+#include "verify/grade/place.h"
 
-enum { MOST_FIELDS = 64, MOST_ROSTER = 4 << 20, COLUMNS = 5 };
+enum { MOST_FIELDS = 64, MOST_ROSTER = 4 << 20, COLUMNS = 6 };
 
-static const char *const columns[COLUMNS] = {"student_id", "last_name", "first_name", "email", "file"};
+static const char *const columns[COLUMNS] = {"student_id", "last_name", "first_name", "email", "file", "submitted"};
 
 static char **member(lc_student *s, int column)
 {
-    char **const members[COLUMNS] = {&s->id, &s->last_name, &s->first_name, &s->email, &s->file};
+    char **const members[COLUMNS] = {&s->id, &s->last_name, &s->first_name, &s->email, &s->file, &s->submitted_text};
     return members[column];
 }
 
@@ -56,7 +57,7 @@ static lc_status read_header(int where[COLUMNS], char **fields, int count, lc_er
     return where[0] >= 0 ? LC_OK
                          : lc_fail(err, LC_BAD_INPUT,
                                    "expected the names of columns, among them student_id; known are also last_name, "
-                                   "first_name, email, file");
+                                   "first_name, email, file, submitted");
 }
 
 /* 60-odd students and 32 bits: none will share one, but if so the second gets the next. */
@@ -100,6 +101,11 @@ static lc_status add_student(lc_roster *roster, const int where[COLUMNS], char *
         if (s->file[0] && strcmp(students[i].file, s->file) == 0)
             return lc_fail(err, LC_BAD_INPUT, "file '%.64s' is there twice", s->file);
     }
+    int64_t when = 0;
+    const char *why = s->submitted_text[0] ? lc_read_moment(&when, s->submitted_text) : NULL;
+    if (why)
+        return lc_fail(err, LC_BAD_INPUT, "submitted '%.40s': %s", s->submitted_text, why);
+    s->submitted = (time_t)when;
     name_anew(roster, seed);
     return LC_OK;
 }

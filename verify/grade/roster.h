@@ -2,18 +2,23 @@
  *
  * roster.h: which hand-in is whose. A CSV file (RFC 4180) whose first line names its columns, in any order:
  *
- *     student_id,last_name,first_name,email,file
+ *     student_id,last_name,first_name,email,file,submitted
  *
  * student_id is needed; the others may be missing or empty, and further ones are passed over. `file` is the name of what was
- * handed in; where it is missing, a student's file is the one whose stem is the student_id (ab123.c).
+ * handed in; where it is missing, a student's file is the one whose stem is the student_id (ab123.c). `submitted` is when
+ * (2026-12-01T23:59:00+01:00); where it is missing, it is when the file was last changed.
  */
 #ifndef LC_ROSTER_H
 #define LC_ROSTER_H
+
+#include <time.h>
 
 #include "core/host.h"
 
 typedef struct lc_student {
     char *id, *last_name, *first_name, *email, *file; /* never NULL; "" where unknown */
+    char *submitted_text;
+    time_t submitted;                                 /* 0: not known */
     char pseudonym[16];                               /* for reports that others may see */
 } lc_student;
 

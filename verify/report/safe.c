@@ -5,8 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Bytes of the character at `c`, 0 where it is none: cut off, overlong, a surrogate, beyond U+10FFFF (RFC 3629). */
-static size_t character(const unsigned char *c)
+size_t lc_utf8_length(const unsigned char *c)
 {
     size_t length = c[0] < 0x80 ? 1 : c[0] >= 0xc2 && c[0] < 0xe0 ? 2 : c[0] >= 0xe0 && c[0] < 0xf0 ? 3 : c[0] >= 0xf0 && c[0] < 0xf5 ? 4 : 0;
     for (size_t i = 1; i < length; ++i)
@@ -28,7 +27,7 @@ json_t *lc_json_text(const char *text)
         return NULL;
     memcpy(copy, text, size);
     for (unsigned char *c = (unsigned char *)copy; *c;) {
-        size_t length = character(c);
+        size_t length = lc_utf8_length(c);
         if (!length)
             *c = '?';
         c += length ? length : 1;
@@ -41,7 +40,7 @@ json_t *lc_json_text(const char *text)
 void lc_xml_text(FILE *out, const char *text)
 {
     for (const unsigned char *c = (const unsigned char *)text; *c;) {
-        size_t length = character(c);
+        size_t length = lc_utf8_length(c);
         int not_xml = (length == 1 && (*c < 0x20 || *c == 0x7f)) || (length == 3 && c[0] == 0xef && c[1] == 0xbf && c[2] >= 0xbe);
         const char *name = *c == '&' ? "&amp;" : *c == '<' ? "&lt;" : *c == '>' ? "&gt;" : *c == '"' ? "&quot;" : NULL;
         if (name)

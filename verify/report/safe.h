@@ -9,6 +9,9 @@
 #include <jansson.h>
 #include <stdio.h>
 
+/* Bytes of the UTF-8 character at `c`, 0 where it is none: cut off, overlong, a surrogate, beyond U+10FFFF (RFC 3629). */
+size_t lc_utf8_length(const unsigned char *c);
+
 /* null for NaN and infinities. */
 json_t *lc_json_number(double value);
 /* Bytes that are no UTF-8 become '?'. NULL only without memory. */

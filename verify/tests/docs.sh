@@ -5,7 +5,8 @@
 # docs/*.md unless named) as a reader would, with PROGRAM as build/lightcheck, in a folder of its own: each must exit
 # with 0, or with N where the line ends in `# exits N`. After the line `<!-- slow -->`, and for make and ./setup.sh, only
 # the names are looked up: the command's options in its --help, the target in `make help`, the argument in setup.sh
-# --help. Links to files of the project must lead somewhere. A ```c block after the line `<!-- NAME.c -->` is that file.
+# --help. A line of build/lightcheck that is indented in place of such a block would be run by nobody, and is wrong.
+# Links to files of the project must lead somewhere. A ```c block after the line `<!-- NAME.c -->` is that file.
 # Exit status 0: all true, 1: something is not.
 set -eu
 cd "$(dirname "$0")/../.."
@@ -114,6 +115,10 @@ while IFS=$tab read -r where how expected line; do
 done <"$temporary/commands"
 
 for file; do
+    for line in $(awk '/^```/ { inside = !inside } !inside && /^    [^`]*build\/lightcheck [^`]*$/ { print FNR }' "$file"); do
+        where=$file:$line
+        wrong 'indented, and in no block: nobody runs it'
+    done
     for link in $(grep -oE '\]\([^)#:]+[)#]' "$file" | sed 's/^..//; s/.$//'); do
         where=$file
         [ -e "$(dirname "$file")/$link" ] || wrong "the link to $link leads nowhere"

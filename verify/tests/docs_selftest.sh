@@ -46,6 +46,7 @@ build/lightcheck nothing                 # wrong
 ```sh
 build/lightcheck nothing        # wrong
 ```
+    build/lightcheck list checks # wrong
 A [link](document.md), one [elsewhere](https://example.org/x.md), and a broken [one](missing.md).
 END
 sh "$here/docs.sh" "$1" "$document" >"$temporary/out" 2>&1 && status=0 || status=$?

@@ -10,7 +10,7 @@ cd "$(dirname "$0")/../.."
 command -v unzip >/dev/null || fail 'unzip is missing'
 make_root bookworm
 zip=${1:-$folder/autograder.zip}
-[ $# -gt 0 ] || sh verify/grade/gradescope/make_zip.sh light_direct "$zip"
+[ $# -gt 0 ] || sh verify/grade/gradescope/make_zip.sh build/lightcheck light_direct "$zip"
 base=$root/autograder
 mkdir -p "$base/source" "$base/submission" "$base/results"
 unzip -q "$zip" -d "$base/source"

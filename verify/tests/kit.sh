@@ -55,6 +55,54 @@ works 0 verify -e all_lights.c -c analytic --scene plane_disk
 works 1 verify -e no_cosine.c -c analytic --scene plane_disk
 works 0 grade all_lights.c -a light_direct
 works 1 grade no_cosine.c -a light_direct
+
+# ---- what an assignment names: sentences, scenes of its own; those of hidden tests are for the autograder only ----
+
+mkdir "$folder/own" "$folder/own/mine"
+cp scenes/plane_rectangle.xml "$folder/own/mine/seen.xml"
+cp scenes/plane_disk.xml "$folder/own/mine/secret.xml"
+echo '{"label_score": "{score} von {points} Punkten"}' >"$folder/own/de.json"
+cat >"$folder/own/own.json" <<'END'
+{"title": "Own", "reference": "light_direct", "bounces": 1, "margin": 0.05, "sentences": "de.json", "tests": [
+ {"name": "seen", "title": "A", "kind": "mean", "points": 1, "scenes": ["mine/seen.xml"]},
+ {"name": "secret", "title": "B", "kind": "mean", "points": 2, "scenes": ["mine/secret.xml", "mine/seen.xml"], "visibility": "hidden"}]}
+END
+rm -rf "$kit"
+sh verify/grade/kit/make_kit.sh "$program" "$kit" "$folder/own/own.json"
+[ ! -e "$kit/assignments/mine/secret.xml" ] && ! grep -rq secret "$kit/assignments" || wrong 'a scene of a hidden test in the kit'
+works 0 list assignments
+[ "$(grep -c Own "$folder/out")" = 1 ] || wrong "list assignments: $(cat "$folder/out")"
+works 0 grade all_lights.c -a own
+grep -q '^1 von 1 Punkten' "$folder/out" || wrong "not in the course's words: $(tail -n 1 "$folder/out")"
+if command -v zip >/dev/null && command -v unzip >/dev/null; then
+    sh verify/grade/gradescope/make_zip.sh "$program" "$folder/own/own.json" "$folder/own.zip"
+    unzip -q "$folder/own.zip" -x 'lightcheck/*' -d "$folder/source"
+    works 0 grade all_lights.c -a "$folder/source/assignment.json"
+    grep -q '^3 von 3 Punkten' "$folder/out" || wrong "of the autograder: $(tail -n 1 "$folder/out")"
+    rm -r "$folder/source"
+else
+    echo 'student kit: no zip, or no unzip: the autograder is left out'
+fi
+# refused WHAT: the assignment cannot be given away, which is said.
+refused() {
+    rm -rf "$kit"
+    status=0
+    sh verify/grade/kit/make_kit.sh "$program" "$kit" "$folder/own/own.json" ${2:+"$2"} >"$folder/out" 2>&1 || status=$?
+    [ $status = 2 ] && grep -q "$1" "$folder/out" || wrong "exit status $status, no '$1': $(cat "$folder/out")"
+}
+mkdir "$folder/other"
+sed 's/"mine/"..\/own\/mine/g' "$folder/own/own.json" >"$folder/other/other.json"
+cp "$folder/own/de.json" "$folder/other"
+refused 'names ../own/mine/seen.xml: put it beside' "$folder/other/other.json"
+cp "$folder/own/own.json" "$folder/other/other.json"
+cp -R "$folder/own/mine" "$folder/other"
+echo '{}' >"$folder/other/de.json"
+refused 'names de.json, and another de.json is there' "$folder/other/other.json"
+rm "$folder/own/mine/secret.xml"
+refused "own.json:3: number 1: cannot read 'mine/secret.xml'"
+sh verify/grade/kit/make_kit.sh "$program" "$folder/again"
+kit=$folder/again
+
 [ -x "$kit/setup.sh" ] && sh "$kit/setup.sh" --help >/dev/null || wrong 'setup.sh does not run'
 grep -q '^RUN /lightcheck/setup.sh$' "$kit/Dockerfile" || wrong 'the Dockerfile does not call setup.sh'
 

@@ -20,6 +20,7 @@ static const struct {
     {"diagnose", lc_suite_diagnose},
     {"mutants", lc_suite_mutants},
     {"lecture", lc_suite_lecture},
+    {"course", lc_suite_course},
     {"handins", lc_suite_handins},
     {"verify", lc_suite_verify},
     {"grade", lc_suite_grade},
@@ -65,6 +66,7 @@ static const struct {
     {"report", lc_suite_report},
     {"similarity", lc_suite_similarity},
     {"roster", lc_suite_roster},
+    {"plain", lc_suite_plain},
     {"status", lc_suite_status},
 };
 

@@ -4,6 +4,8 @@
 
 #include <math.h>
 
+#include "verify/grade/assignment_files.h"
+#include "verify/grade/place.h"
 #include "verify/grade/sentences.h"
 #include "verify/tests/grade_help.h"
 
@@ -35,6 +37,10 @@ static const struct {
     {OPENING "\"due\": \"2026-12-01\"}", ":4: due: ", "a moment with its zone"},
     {OPENING "\"due\": \"2026-12-01T10:00:00\"}", ":4: due: ", "a moment with its zone"},
     {OPENING "\"due\": \"2026-13-01T10:00:00Z\"}", ":4: due: ", "a moment with its zone"},
+    {OPENING "\"due\": \"2026-02-31T10:00:00Z\"}", ":4: due: ", "no such day"},
+    {OPENING "\"due\": \"2026-04-31T10:00:00Z\"}", ":4: due: ", "no such day"},
+    {OPENING "\"due\": \"2100-02-29T10:00:00Z\"}", ":4: due: ", "no such day"}, /* no leap year */
+    {OPENING "\"published\": \"2027-02-29T10:00:00Z\"}", ":4: published: ", "no such day"},
     {OPENING "\"late\": {\"per_day\": 0.1}}", ":4: late: ", "without `due` nothing is late"},
     {OPENING "\"solutions\": [\"path\",\n\"path_no_pi\"]}", ":5: number 2: ", "lightcheck list estimators|variants"},
     {OPENING "\"beyond\": [\"path\"]}", ":4: number 1: ", "lightcheck list mutants"},
@@ -70,6 +76,137 @@ START_TEST(test_assignment_mistakes)
     ck_assert_int_eq(read_text_as_assignment(&a, mistakes[_i].text, &err), LC_BAD_INPUT);
     ck_assert_msg(strstr(err.text, mistakes[_i].says) != NULL, "%s\nexpected: %s", err.text, mistakes[_i].says);
     ck_assert_msg(strstr(err.text, mistakes[_i].line) != NULL, "%s\nexpected: %s", err.text, mistakes[_i].line);
+}
+END_TEST
+
+/* What shows only when all is planned: a check that has nothing to say, a scene that is none. */
+#define ASKS(extra) \
+    "{\"title\": \"T\", \"reference\": \"light_direct\", \"bounces\": 1, \"tests\": [\n" ONE ",\n" \
+    "{\"name\": \"x\", \"title\": \"X\", \"points\": 1, \"kind\": \"check\",\n" extra "}]}"
+
+static const struct {
+    const char *text, *says;
+} plans[] = {
+    {ASKS("\"check\": \"furnace\", \"scenes\":\n[\"plane_rectangle\"]"), ":5: test x: the check furnace says nothing about light_direct over plane_rectangle"},
+    {ASKS("\"check\": \"analytic\", \"scenes\": [\"plane_rectangle\",\n\"mirror_corridor\"]"),
+     ":5: test x: the check analytic says nothing about light_direct over mirror_corridor"},
+    {ASKS("\"check\": \"metamorphic\", \"relation\": \"luck\", \"scenes\": [\"five_lights\"]"), ":4: test x: the check metamorphic says nothing about light_direct over five_lights with this relation"},
+};
+
+START_TEST(test_assignment_plan)
+{
+    lc_error err = {""};
+    lc_grade_options o = options();
+    ck_assert_msg(read_text_as_assignment(&a, plans[_i].text, &err) == LC_OK, "%s", err.text);
+    ck_assert_int_eq(lc_grade_plan(&a, &o, &err), LC_BAD_INPUT);
+    ck_assert_msg(strstr(err.text, plans[_i].says) != NULL, "%s\nexpected: %s", err.text, plans[_i].says);
+}
+END_TEST
+
+START_TEST(test_assignment_only)
+{
+    lc_error err = {""};
+    lc_grade_options o = options();
+    assign(HEAD "\"tests\": [" FIRST LAMP "]}");
+    ck_assert_msg(lc_grade_plan(&a, &o, &err) == LC_OK, "%s", err.text);
+    o.only = "lamp";
+    ck_assert_msg(lc_grade_plan(&a, &o, &err) == LC_OK, "%s", err.text);
+    o.only = "lampe";
+    ck_assert_int_eq(lc_grade_plan(&a, &o, &err), LC_BAD_INPUT);
+    ck_assert_msg(strstr(err.text, "there is no test 'lampe'; it has: compiles, finite, lamp, more"), "%s", err.text);
+}
+END_TEST
+
+/* ---- files that it names ------------------------------------------------------------------------------------------------ */
+
+static char folder[64];
+
+static void write_file(const char *name, const char *text)
+{
+    char path[128];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *file = fopen(path, "w");
+    ck_assert_ptr_nonnull(file);
+    fputs(text, file);
+    ck_assert_int_eq(fclose(file), 0);
+}
+
+static void set_up(void)
+{
+    char command[512];
+    strcpy(folder, "/tmp/lightcheck-course-XXXXXX");
+    ck_assert_ptr_nonnull(mkdtemp(folder));
+    snprintf(command, sizeof command, "mkdir %s/own && cp scenes/plane_rectangle.xml %s/own/mine.xml && cp scenes/plane_disk.xml %s/own/other.xml",
+             folder, folder, folder);
+    ck_assert_int_eq(system(command), 0);
+}
+
+static void tear_down(void)
+{
+    char command[128];
+    snprintf(command, sizeof command, "rm -rf %s", folder);
+    ck_assert_int_eq(system(command), 0);
+}
+
+static lc_status read_course(const char *text, lc_error *err)
+{
+    char path[128];
+    write_file("course.json", text);
+    snprintf(path, sizeof path, "%s/course.json", folder);
+    return lc_assignment_read(&a, path, err);
+}
+
+#define OWN(sentences, scene, other) \
+    "{\"title\": \"T\", \"reference\": \"light_direct\", \"bounces\": 1,\n\"sentences\": \"" sentences "\", \"tests\": [\n" ONE ",\n" \
+    "{\"name\": \"x\", \"title\": \"X\", \"points\": 1, \"kind\": \"mean\", \"scenes\": [\"" scene "\", \"cornell\", \"" scene "\"]},\n" \
+    "{\"name\": \"y\", \"title\": \"Y\", \"points\": 1, \"kind\": \"mean\", \"visibility\": \"hidden\",\n" \
+    "\"scenes\": [\"" other "\", \"random_rectangle\", \"" scene "\"]}]}"
+
+static void list_file(void *user, const char *name, const char *path)
+{
+    char *list = user;
+    ck_assert_msg(access(path, R_OK) == 0, "%s", path);
+    strcat(strcat(list, name), " ");
+}
+
+/* Beside the assignment, whatever the working directory is; and where there is none, as before. */
+START_TEST(test_assignment_files)
+{
+    char list[256] = "", path[LC_PATH_SIZE], expected[128];
+    lc_error err = {""};
+    lc_grade_options o = options();
+    write_file("de.json", "{\"skipped\": \"wegen {because}\"}");
+    ck_assert_msg(read_course(OWN("de.json", "own/mine.xml", "own/other.xml"), &err) == LC_OK, "%s", err.text);
+    ck_assert_msg(lc_grade_plan(&a, &o, &err) == LC_OK, "%s", err.text);
+    lc_assignment_files(&a, 0, list_file, list);
+    ck_assert_str_eq(list, "de.json own/mine.xml own/other.xml ");
+    list[0] = 0;
+    lc_assignment_files(&a, 1, list_file, list);
+    ck_assert_str_eq(list, "de.json own/mine.xml ");
+    snprintf(expected, sizeof expected, "%s/own/mine.xml", folder);
+    ck_assert_str_eq(lc_assignment_scene(path, &a, "own/mine.xml"), expected);
+    ck_assert_str_eq(lc_assignment_scene(path, &a, "scenes/cornell.xml"), "scenes/cornell.xml"); /* not beside it, but here */
+    ck_assert_str_eq(lc_assignment_scene(path, &a, expected), expected);
+    ck_assert_str_eq(lc_assignment_scene(path, &a, "cornell"), "cornell");
+}
+END_TEST
+
+START_TEST(test_assignment_files_missing)
+{
+    lc_error err = {""};
+    lc_grade_options o = options();
+    ck_assert_int_eq(read_course(OWN("nix.json", "own/mine.xml", "own/other.xml"), &err), LC_BAD_INPUT);
+    ck_assert_msg(strstr(err.text, "course.json:2: sentences: cannot read 'nix.json'"), "%s", err.text);
+    write_file("de.json", "{\n\"skiped\": \"x\"}");
+    ck_assert_int_eq(read_course(OWN("de.json", "own/mine.xml", "own/other.xml"), &err), LC_BAD_INPUT);
+    ck_assert_msg(strstr(err.text, "de.json:2: skiped: there is no sentence of this name"), "%s", err.text);
+    write_file("de.json", "{}");
+    ck_assert_int_eq(read_course(OWN("de.json", "own/mine.xml", "own/none.xml"), &err), LC_BAD_INPUT);
+    ck_assert_msg(strstr(err.text, "course.json:6: number 1: cannot read 'own/none.xml'"), "%s", err.text);
+    write_file("own/other.xml", "<scene>\n<bulb/></scene>");
+    ck_assert_msg(read_course(OWN("de.json", "own/mine.xml", "own/other.xml"), &err) == LC_OK, "%s", err.text);
+    ck_assert_int_eq(lc_grade_plan(&a, &o, &err), LC_BAD_INPUT);
+    ck_assert_msg(strstr(err.text, "course.json:6: test y: ") && strstr(err.text, "other.xml:"), "%s", err.text);
 }
 END_TEST
 
@@ -118,6 +255,20 @@ START_TEST(test_assignment_values)
     ck_assert_double_eq(t->least, 0);
     ck_assert_int_eq(a.tests[0].max_bounces, -1);
     ck_assert(isinf(a.tests[0].most));
+}
+END_TEST
+
+START_TEST(test_assignment_leap_days)
+{
+    static const struct {
+        const char *text;
+        int64_t seconds; /* date -u -d TEXT +%s */
+    } days[] = {{"2024-02-29T00:00:00Z", 1709164800}, {"2000-02-29T00:00:00Z", 951782400}, {"2026-01-31T00:00:00Z", 1769817600}};
+    for (size_t i = 0; i < sizeof days / sizeof days[0]; ++i) {
+        int64_t seconds = 0;
+        ck_assert_ptr_null(lc_read_moment(&seconds, days[i].text));
+        ck_assert_int_eq(seconds, days[i].seconds);
+    }
 }
 END_TEST
 
@@ -196,10 +347,18 @@ Suite *lc_suite_assignment(void)
     Suite *suite = suite_create("assignment");
     TCase *reader = tcase_create("reader");
     tcase_add_loop_test(reader, test_assignment_mistakes, 0, sizeof mistakes / sizeof mistakes[0]);
+    tcase_add_loop_test(reader, test_assignment_plan, 0, sizeof plans / sizeof plans[0]);
+    tcase_add_test(reader, test_assignment_only);
     tcase_add_test(reader, test_assignment_no_such);
     tcase_add_test(reader, test_assignment_values);
+    tcase_add_test(reader, test_assignment_leap_days);
     tcase_add_test(reader, test_assignment_shipped);
     tcase_add_test(reader, test_sentences_translated);
     suite_add_tcase(suite, reader);
+    TCase *files = tcase_create("files");
+    tcase_add_checked_fixture(files, set_up, tear_down);
+    tcase_add_test(files, test_assignment_files);
+    tcase_add_test(files, test_assignment_files_missing);
+    suite_add_tcase(suite, files);
     return suite;
 }

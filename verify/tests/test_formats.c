@@ -267,7 +267,7 @@ START_TEST(test_formats_gradescope)
     o = read_json(write_result(&r, "gradescope", 0));
     conforms(o, gradescope);
     ck_assert(number(o, "score") == 0);
-    ck_assert_ptr_nonnull(strstr(word(o, "output"), "could not be graded, and is no attempt. x.c:1: error: <'?'>"));
+    ck_assert_ptr_nonnull(strstr(word(o, "output"), "could not be graded, and is no attempt. x.c:1: error: <'\\xff'>"));
     json_decref(o);
 }
 END_TEST

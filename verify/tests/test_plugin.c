@@ -121,6 +121,10 @@ START_TEST(test_plugin_new)
     expect("L new 2much", 2, "no name");
     expect("L new ../x", 2, "no name");
     expect("cp mine.c mine.cpp && L render cornell -e mine.cpp -s 1 --size 8x8 -o x.exr", 0, "cornell by mine");
+    expect("cp mine.c mine.CXX && L render cornell -e mine.CXX -s 1 --size 8x8 -o x.exr", 0, "cornell by mine");
+    expect("sed 's/lc_rgb sum = lc_black();/&\\n    int class = 0;\\n    (void)class;/' mine.c > c.c && L render cornell -e c.c -s 1 --size 8x8 -o x.exr", 0,
+           "cornell by mine");
+    expect("cp c.c c.C && L render cornell -e c.C -s 1 --size 8x8 -o x.exr", 2, "does not compile"); /* C++ */
 }
 END_TEST
 

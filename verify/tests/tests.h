@@ -43,6 +43,8 @@ Suite *lc_suite_povray(void);
 Suite *lc_suite_pov_sample(void);
 Suite *lc_suite_verify(void);
 Suite *lc_suite_mutants(void);
+Suite *lc_suite_course(void);
+Suite *lc_suite_plain(void);
 Suite *lc_suite_plugin(void);
 Suite *lc_suite_jail(void);
 Suite *lc_suite_similarity(void);

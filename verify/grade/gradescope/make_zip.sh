@@ -1,10 +1,12 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# usage: make_zip.sh ASSIGNMENT|FILE.json OUT.zip
-# An autograder for Gradescope: setup.sh, run_autograder and assignment.json at its root, and what lightcheck is built from.
+# usage: make_zip.sh PROGRAM ASSIGNMENT|FILE.json OUT.zip
+# An autograder for Gradescope: setup.sh, run_autograder, assignment.json and the files that it names at its root, and what lightcheck is
+# built from.
 set -eu
+program=$(cd "$(dirname "$1")" && pwd)/${1##*/}
+assignment=$2
 cd "$(dirname "$0")/../../.."
-assignment=$1
 case $assignment in
 *.json) ;;
 *) assignment=verify/assignments/$assignment.json ;;
@@ -17,14 +19,15 @@ command -v zip >/dev/null || {
     echo 'make_zip.sh: zip is missing: apt-get install zip' >&2
     exit 2
 }
-mkdir -p "$(dirname "$2")"
-out=$(cd "$(dirname "$2")" && pwd)/${2##*/}
+mkdir -p "$(dirname "$3")"
+out=$(cd "$(dirname "$3")" && pwd)/${3##*/}
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 trap 'exit 1' HUP INT TERM
 
 cp verify/grade/gradescope/setup.sh verify/grade/gradescope/run_autograder "$folder"
 cp "$assignment" "$folder/assignment.json"
+sh verify/grade/kit/copy_files.sh "$program" "$assignment" "$folder"
 mkdir "$folder/lightcheck"
 cp -R Makefile setup.sh LICENSE LICENSE-MIT src estimators scenes verify "$folder/lightcheck"
 rm -rf "$folder/lightcheck/verify/tests" "$folder/lightcheck/verify/proof"

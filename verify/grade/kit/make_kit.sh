@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # usage: make_kit.sh PROGRAM FOLDER [FILE.json ...]
 # Writes what a student gets into FOLDER, which must not be there yet: the program and its worker, the scenes, the
-# public part of the assignments (all that lightcheck has, unless named), header, template and the guide. Nothing of
-# estimators/ and of verify/mutants/.
+# public part of the assignments (all that lightcheck has, unless named) with the files that it names, header, template
+# and the guide. Nothing of estimators/ and of verify/mutants/.
 set -eu
 program=$1
 kit=$2
@@ -24,6 +24,7 @@ cp docs/student.md "$kit/README.md"
 mkdir "$kit/assignments"
 for assignment; do
     "$program" assignment public "$assignment" >"$kit/assignments/${assignment##*/}"
+    sh verify/grade/kit/copy_files.sh "$program" "$assignment" "$kit/assignments" --public
 done
 
 # The image must be of the system that the program was made on: it links to that one's libraries.
