@@ -133,14 +133,39 @@ double lc_claim_mean(const lc_film *film, const lc_expected *expected, const uns
     return used ? sum / (double)used : 0;
 }
 
+double lc_claim_share(const unsigned char *skip, int pixels)
+{
+    int used = 0;
+    for (int i = 0; i < pixels; ++i)
+        used += !(skip && skip[i]);
+    return (double)used / pixels;
+}
+
 /* ---- exact claims ----------------------------------------------------------------------------------------------- */
 
+void lc_row_settle(lc_row *row, const lc_session *session, double share, double light)
+{
+    row->exact = 1;
+    row->verdict = LC_ROW_PASS;
+    row->missed = light > 0 ? lc_missed_value(session->margin, share * (double)row->paths, 1e-6) : 0;
+}
+
+/* The largest of three channels' means. */
+static double light_of(const lc_film *film, const lc_expected *expected, const unsigned char *skip)
+{
+    double most = 0;
+    for (int c = 0; c < 3; ++c)
+        most = fmax(most, lc_claim_mean(film, expected, skip, c));
+    return most;
+}
+
 /* Pixel by pixel, against the other film's or the expected values. */
-static void compare_exactly(lc_row *row, const lc_film *film, const lc_film *other, const lc_expected *expected,
-                            double tolerance)
+static void compare_exactly(lc_row *row, const lc_session *session, const lc_film *film, const lc_film *other,
+                            const lc_expected *expected, double tolerance)
 {
     size_t count = (size_t)film->width * (size_t)film->height;
-    row->verdict = LC_ROW_PASS;
+    const unsigned char *skip = expected ? expected->skip : NULL;
+    lc_row_settle(row, session, lc_claim_share(skip, film->width * film->height), light_of(other, expected, skip));
     for (size_t i = 0; i < count; ++i) {
         for (int c = 0; c < 3; ++c) {
             if (expected && expected->skip[i])
@@ -150,6 +175,7 @@ static void compare_exactly(lc_row *row, const lc_film *film, const lc_film *oth
             if (lc_decide_exact(is - should, tolerance * fabs(should)) == LC_PASS)
                 continue;
             row->verdict = LC_ROW_FAIL;
+            row->missed = 0;
             row->channel = c;
             row->expected = should;
             row->ratio = row->tile_ratio = is / should;
@@ -186,7 +212,7 @@ static lc_status judge_exact(lc_row *row, lc_session *session, const lc_claim *c
     if (film->bad)
         lc_row_bad(row, film, session->options->seed);
     else
-        compare_exactly(row, film, other, expected, claim->tolerance);
+        compare_exactly(row, session, film, other, expected, claim->tolerance);
     show(session, row, film, other, expected);
     return LC_OK;
 }
@@ -373,10 +399,8 @@ static lc_status walk(lc_row *row, lc_session *session, const lc_claim *claim, c
         int is_bad = film->bad || (other && other->bad);
         if (is_bad)
             lc_row_bad(row, film->bad ? film : other, session->options->seed);
-        else if (claim->may_be_still && expected && is_still(film, expected)) {
-            row->exact = 1;
-            compare_exactly(row, film, NULL, expected, fmax(claim->tolerance, 1e-9));
-        }
+        else if (claim->may_be_still && expected && is_still(film, expected))
+            compare_exactly(row, session, film, NULL, expected, fmax(claim->tolerance, 1e-9));
         if (is_bad || row->exact) {
             show(session, row, film, other, expected);
             return LC_OK;

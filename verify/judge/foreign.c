@@ -255,10 +255,12 @@ static int is_still(const lc_film *film, const unsigned char *skip, double slack
     return 1;
 }
 
-static void compare_still(lc_row *row, const lc_film *film, const reference *r, double tolerance, double slack)
+static void compare_still(lc_row *row, const lc_session *session, const lc_film *film, const reference *r, double tolerance, double slack)
 {
-    row->exact = 1;
-    row->verdict = LC_ROW_PASS;
+    double light = 0;
+    for (int c = 0; c < 3; ++c)
+        light = fmax(light, lc_claim_mean(r->film, r->expected, r->skip, c));
+    lc_row_settle(row, session, lc_claim_share(r->skip, film->width * film->height), light);
     for (size_t i = 0; i < (size_t)film->width * (size_t)film->height; ++i)
         for (size_t c = 0; c < 3 && !r->skip[i]; ++c) {
             double is = film->pixels[i].c[c].mean;
@@ -266,6 +268,7 @@ static void compare_still(lc_row *row, const lc_film *film, const reference *r, 
             if (lc_decide_exact(is - should, tolerance * fabs(should) + slack) == LC_PASS)
                 continue;
             row->verdict = LC_ROW_FAIL;
+            row->missed = 0;
             row->channel = (int)c;
             snprintf(row->reason, sizeof row->reason, "%s on %s is wrong: pixel %d,%d has %c = %.9g, expected %.9g",
                      row->estimator, row->scene, (int)(i % (size_t)film->width), (int)(i / (size_t)film->width), "RGB"[c],
@@ -367,7 +370,7 @@ static lc_status judge(lc_row *row, lc_session *session, const lc_claim *claim, 
         row->paths = row->samples * (uint64_t)d->width * (uint64_t)d->height;
         if ((claim->may_be_still || claim->exact) && is_still(f->film, r->skip, slack) &&
             (!r->film || is_still(r->film, r->skip, slack))) {
-            compare_still(row, f->film, r, tolerance, slack);
+            compare_still(row, session, f->film, r, tolerance, slack);
             lc_row_show(session, row, evidence_of(f->film, r));
             return LC_OK;
         }

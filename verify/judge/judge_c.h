@@ -82,6 +82,12 @@ lc_status lc_claim_noise(double *c, lc_session *session, const lc_claim *claim, 
                          lc_error *err);
 /* Mean over the pixels that are not skipped, of the film or else of the expected values. */
 double lc_claim_mean(const lc_film *film, const lc_expected *expected, const unsigned char *skip, int channel);
+/* Share of the pixels that are not skipped; `skip` may be NULL. */
+double lc_claim_share(const unsigned char *skip, int pixels);
+/* An exact row that passes, for all its samples agree. Such a test has no error that a budget could bound, but a contribution that no
+ * sample met is as invisible to it as to any other: the row says how large one of the run's margin has to be. `light`: the mean of what
+ * is expected; of black no contribution has a size. */
+void lc_row_settle(lc_row *row, const lc_session *session, double share, double light);
 /* What a look found, in the hardest of three channels. */
 typedef struct lc_look {
     lc_verdict verdict; /* of all channels */

@@ -32,7 +32,8 @@ typedef struct lc_row {
     double tile_ratio;                           /* there: mean / expected mean of the tile; NaN where that is 0 */
     double tile_log10_p;                         /* of it, corrected for all tiles and levels */
     double
-        missed; /* PASS: the largest contribution that could have been missed, in units of the mean of a sample; else 0 */
+        missed; /* PASS: the largest contribution that could have been missed, in units of the mean of a sample; else 0, as in rows about
+                   the host, and about black, of which no contribution has a size */
     char reason[512];    /* in words, for FAIL and UNDECIDED */
     char reproduce[640]; /* a command line */
     char pictures[LC_MOST_PATH]; /* FAIL: how the names of its pictures begin, with their folder (pictures.h); empty: none */

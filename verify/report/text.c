@@ -28,11 +28,11 @@ static void format_count(char *text, size_t size, uint64_t count)
 static void format_unseen(char *text, size_t size, const lc_row *row)
 {
     text[0] = 0;
-    if (row->verdict == LC_ROW_PASS && !row->exact && row->missed >= 1e15)
+    if (row->verdict == LC_ROW_PASS && row->missed >= 1e15)
         snprintf(text, size, "%.1e", row->missed);
-    else if (row->verdict == LC_ROW_PASS && !row->exact && row->missed >= 100)
+    else if (row->verdict == LC_ROW_PASS && row->missed >= 100)
         format_count(text, size, (uint64_t)(row->missed + 0.5));
-    else if (row->verdict == LC_ROW_PASS && !row->exact && row->missed > 0)
+    else if (row->verdict == LC_ROW_PASS && row->missed > 0)
         snprintf(text, size, "%.2g", row->missed);
 }
 
@@ -109,7 +109,7 @@ void lc_report_text(FILE *out, const lc_report *report)
     fprintf(out, "\nestimate: mean of reflected light / what is expected, in the hardest of three channels; PASS: "
                  "shown within 1 +- margin.\n"
                  "unseen: light of the margin's size that no sample met can only come in samples worth more than this many "
-                 "times the mean.\n");
+                 "times the mean (of an exact row: light of the size of the run's margin).\n");
     fprintf(out, "%s", report->budget);
     fprintf(out,
             "%d rows: %d PASS, %d FAIL, %d UNDECIDED; ",

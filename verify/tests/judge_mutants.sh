@@ -74,6 +74,10 @@ mutant same_stream_twice $estimate 's/if (x.seed == y.seed \&\& /if (0 \&\& /'
 mutant first_stream_only $estimate 's/j <= b->more_count/j <= 0/'
 mutant third_moment_not_merged src/core/film.c 's/m->m3 += o->m3 + square/m->m3 += square/'
 
+# What a PASS excludes.
+mutant exact_row_excludes_everything $claim 's/row->missed = light > 0 ? .*;/row->missed = 0;/'
+mutant exact_row_counts_what_is_skipped $claim 's/share \* (double)row->paths, 1e-6/(double)row->paths, 1e-6/'
+
 # What a FAIL looks like, why a row stays undecided, and what of a film is kept in a file.
 suites=$shown
 mutant picture_of_the_wrong_sign $pictures 's/mean - should,/should - mean,/'

@@ -95,7 +95,7 @@ START_TEST(budget_is_spent_once)
     char text[2048], small[40];
     int length = lc_budget_text(text, sizeof text, &b, 64, 64);
     ck_assert_int_eq(length, (int)strlen(text));
-    ck_assert(strstr(text, "4096 tiles") && strstr(text, "300 rows x 6 looks"));
+    ck_assert(strstr(text, "4096 tiles") && strstr(text, "300 rows x 6 looks") && strstr(text, "exact rows are outside of it"));
     ck_assert_int_eq(lc_budget_text(small, sizeof small, &b, 64, 64), length);
     ck_assert_uint_eq(strlen(small), sizeof small - 1);
     b.looks = 0;
