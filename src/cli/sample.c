@@ -13,7 +13,7 @@
 
 typedef struct sample_arguments {
     const char *estimator, *pixel, *size;
-    int bounces, gdb;
+    int bounces, min_bounces, gdb;
     uint64_t index, seed, arm;
     lc_strings definitions;
     int argc; /* as given, for --gdb */
@@ -95,7 +95,7 @@ static lc_status replay(void *user, const lc_strings *rest, lc_error *err)
     const lc_estimator *estimator;
     lc_scene *scene = NULL;
     int width, height, x, y;
-    lc_render_options options = {.seed = a->seed};
+    lc_render_options options = {.seed = a->seed, .min_bounces = a->min_bounces};
     if (!a->estimator || !a->pixel)
         return lc_fail(err, LC_BAD_INPUT, "-e NAME|FILE.c and --pixel X,Y say which sample");
     lc_status status = lc_cli_find_estimator(&estimator, a->estimator, err);
@@ -119,9 +119,9 @@ static lc_status replay(void *user, const lc_strings *rest, lc_error *err)
     if (status == LC_OK) {
         lc_trace_log log = {print_line, NULL};
         options.arm = a->arm <= UINT32_MAX ? (uint32_t)a->arm : lc_arm(estimator->name);
-        printf("sample %llu of pixel %d,%d of %s (%dx%d), %s, bounces 0 to %d, seed %llu\n",
+        printf("sample %llu of pixel %d,%d of %s (%dx%d), %s, bounces %d to %d, seed %llu\n",
                (unsigned long long)a->index, x, y, lc_scene_description(scene)->name, width, height, estimator->name,
-               options.max_bounces, (unsigned long long)a->seed);
+               options.min_bounces, options.max_bounces, (unsigned long long)a->seed);
         lc_rgb c = lc_replay(scene, estimator, &options, width, height, x, y, a->index, &log);
         printf("radiance (%.9g, %.9g, %.9g) W sr^-1 m^-2\n", c.r, c.g, c.b);
     }
@@ -140,6 +140,7 @@ static int run(const lc_command *self, int argc, char **argv)
         {0, "seed", LC_OPT_UINT64, &a.seed, "N", "default 1", 0, 0, NULL},
         {0, "arm", LC_OPT_UINT64, &a.arm, "N", "stream, as `grade` names it; default: the estimator's in a render", 0, 0, NULL},
         {0, "bounces", LC_OPT_INT, &a.bounces, "N", "as for render", 0, LC_UNBOUNDED, NULL},
+        {0, "min-bounces", LC_OPT_INT, &a.min_bounces, "N", "as for render", 0, LC_UNBOUNDED, NULL},
         {0, "size", LC_OPT_STRING, &a.size, "WxH", "as for render", 0, 0, NULL},
         {'D', "define", LC_OPT_LIST, &a.definitions, "NAME=VALUE", "value of a <default> of the scene", 0, 0, NULL},
         {0, "gdb", LC_OPT_FLAG, &a.gdb, NULL, "under gdb, stopped in the estimator; FILE.c is compiled without optimisation", 0, 0, NULL},

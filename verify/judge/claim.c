@@ -473,19 +473,16 @@ static lc_status judge_by_itself(lc_row *row, lc_session *session, const lc_clai
 
 static lc_status judge_host(lc_row *row, lc_session *session, const lc_claim *claim, lc_error *err)
 {
-    const lc_verify_options *o = session->options;
     snprintf(row->check, sizeof row->check, "%s", claim->check->name);
     snprintf(row->scene, sizeof row->scene, "%s", claim->subject);
     snprintf(row->estimator, sizeof row->estimator, "host");
     snprintf(row->source, sizeof row->source, "%s", claim->source);
-    snprintf(row->reproduce, sizeof row->reproduce, "%s verify --suite %s -c %s --seed %llu", o->program,
-             o->suite->name, row->check, (unsigned long long)o->seed);
+    lc_row_reproduce(row, session->options, claim);
     return judge_by_itself(row, session, claim, 0, err);
 }
 
 lc_status lc_judge_claim(lc_row *row, lc_session *session, const lc_claim *claim, lc_error *err)
 {
-    const lc_verify_options *o = session->options;
     if (!claim->scene)
         return judge_host(row, session, claim, err);
     const lc_scene_desc *desc = lc_scene_description(claim->scene);
@@ -494,13 +491,7 @@ lc_status lc_judge_claim(lc_row *row, lc_session *session, const lc_claim *claim
              claim->relation ? claim->relation : "");
     snprintf(row->estimator, sizeof row->estimator, "%s", claim->estimator->name);
     snprintf(row->source, sizeof row->source, "%s", claim->source);
-    snprintf(row->reproduce, sizeof row->reproduce, "%s verify --suite %s -c %s -e %s --scene %s --seed %llu",
-             o->program, o->suite->name, row->check,
-             o->given && claim->estimator == o->estimator ? o->given : row->estimator, desc->name,
-             (unsigned long long)o->seed);
-    if (lc_is_foreign(session, claim->estimator))
-        snprintf(row->reproduce, sizeof row->reproduce, "%s verify --suite %s -c %s --renderer %.300s --scene %s --seed %llu",
-                 o->program, o->suite->name, row->check, o->renderer->path, desc->name, (unsigned long long)o->seed);
+    lc_row_reproduce(row, session->options, claim);
     row->exact = claim->exact;
     row->min_bounces = claim->min_bounces;
     row->max_bounces = claim->max_bounces;

@@ -49,6 +49,7 @@ typedef struct lc_verify_options {
     int threads;
     const lc_estimator *estimator; /* only this one (it need not be in the registry), or NULL: all */
     const char *given;             /* how that was named on the command line; NULL: by its name */
+    int is_jailed;                 /* and that it was to be locked up */
     const char *check, *scene;     /* only these, or NULL */
     int shard, shards;             /* only every shards-th scene, from `shard` on, 0 <= shard < shards; what is said of the host
                                       counts as the first scene. 0 0: all */

@@ -108,6 +108,8 @@ void lc_row_conclude(lc_row *row, const lc_look *look, double alpha_pass);
 double lc_row_hardness(const lc_pyramid *p, double scale);
 /* Hands the images of a row that failed to whoever asked for them, one row at a time. */
 void lc_row_show(const lc_session *session, lc_row *row, lc_exhibit evidence);
+/* The command line that gives the row of this claim again. */
+void lc_row_reproduce(lc_row *row, const lc_verify_options *options, const lc_claim *claim);
 /* Bad samples, of a film, in words. */
 void lc_row_bad(lc_row *row, const lc_film *film, uint64_t seed);
 

@@ -53,3 +53,21 @@ void lc_xml_text(FILE *out, const char *text)
         c += length ? length : 1;
     }
 }
+
+char *lc_shell_word(char *out, const char *text)
+{
+    char *at = out;
+    size_t plain = strspn(text, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_@%+=:,./-");
+    if (plain > 0 && !text[plain])
+        return strcpy(out, text);
+    *at++ = '\'';
+    for (; *text; ++text) {
+        if (*text == '\'')
+            memcpy(at, "'\\''", 4), at += 4;
+        else
+            *at++ = *text;
+    }
+    *at++ = '\'';
+    *at = 0;
+    return out;
+}

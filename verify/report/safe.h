@@ -16,4 +16,9 @@ json_t *lc_json_text(const char *text);
 /* For an attribute in double quotes, or between tags; what XML 1.0 cannot hold becomes a space, what is no UTF-8 '?'. */
 void lc_xml_text(FILE *out, const char *text);
 
+/* Bytes that lc_shell_word() may need for a text of this length, the 0 included. */
+#define LC_SHELL_WORD(length) (4 * (length) + 3)
+/* A text as one word of a POSIX shell: in quotes unless it needs none. Returns `out`, of LC_SHELL_WORD(strlen(text)) bytes. */
+char *lc_shell_word(char *out, const char *text);
+
 #endif

@@ -74,6 +74,10 @@ mutant same_stream_twice $estimate 's/if (x.seed == y.seed \&\& /if (0 \&\& /'
 mutant first_stream_only $estimate 's/j <= b->more_count/j <= 0/'
 mutant third_moment_not_merged src/core/film.c 's/m->m3 += o->m3 + square/m->m3 += square/'
 
+# The line that gives a row again.
+mutant margin_not_said verify/judge/reproduce.c 's/if (o->margin > 0)/if (0)/' verify/words
+mutant file_not_quoted verify/judge/reproduce.c 's/lc_shell_word(word, whole)/whole/; s/char word.*, whole/char whole/' verify/words
+
 # What a PASS excludes.
 mutant exact_row_excludes_everything $claim 's/row->missed = light > 0 ? .*;/row->missed = 0;/'
 mutant exact_row_counts_what_is_skipped $claim 's/share \* (double)row->paths, 1e-6/(double)row->paths, 1e-6/'

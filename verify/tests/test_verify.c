@@ -100,6 +100,47 @@ static lc_rgb two_percent_more(const lc_scene *scene, const lc_ray *ray, const l
     return lc_rgb_scale(1.02, find("light_direct")->radiance(scene, ray, hit, options, sampler));
 }
 
+/* All that bears on the verdict, and nothing that is as usual; no path is too long. */
+START_TEST(a_row_names_its_command)
+{
+    char given[4000], line[8192];
+    lc_verify_options o;
+    lc_scene *scene;
+    lc_adapter adapter = {.seconds = LC_ADAPTER_SECONDS, .path = "/opt/a b/x.sh"};
+    lc_claim claim = {.check = lc_checks[0], .estimator = find("path")};
+    static lc_row row;
+    ck_assert_int_eq(load_small(&scene, "plane_disk", NULL), LC_OK);
+    claim.scene = scene;
+    memset(given, '\'', sizeof given - 1);
+    given[sizeof given - 1] = 0;
+    lc_verify_options_init(&o);
+    lc_row_reproduce(&row, &o, &claim);
+    snprintf(line, sizeof line, "build/lightcheck verify --suite quick -c %s -e path --scene plane_disk --seed 1", lc_checks[0]->name);
+    ck_assert_str_eq(row.reproduce, line);
+
+    o.estimator = claim.estimator;
+    o.given = given;
+    o.is_jailed = 1;
+    o.margin = 0.1;
+    o.false_fail = o.false_pass = 2.5e-4;
+    lc_row_reproduce(&row, &o, &claim);
+    const char *end = " --jail --scene plane_disk --seed 1 --margin 0.1 --budget 0.00025";
+    ck_assert_uint_gt(strlen(row.reproduce), 4 * (sizeof given - 1));
+    ck_assert_str_eq(row.reproduce + strlen(row.reproduce) - strlen(end), end);
+
+    for (int slow = 0; slow < 2; ++slow) {
+        lc_verify_options_init(&o);
+        o.renderer = &adapter;
+        o.estimator = claim.estimator = &adapter.estimator;
+        adapter.seconds = slow ? 1200 : LC_ADAPTER_SECONDS;
+            lc_row_reproduce(&row, &o, &claim);
+        ck_assert_ptr_nonnull(strstr(row.reproduce, slow ? " --renderer '/opt/a b/x.sh' --seconds 1200 --scene plane_disk --seed 1"
+                                                         : " --renderer '/opt/a b/x.sh' --scene plane_disk --seed 1"));
+    }
+    lc_scene_free(scene);
+}
+END_TEST
+
 static lc_rgb black(const lc_scene *scene, const lc_ray *ray, const lc_hit *hit, const lc_options *options,
                     lc_sampler *sampler)
 {
@@ -524,6 +565,7 @@ Suite *lc_suite_verify(void)
     tcase_add_test(tc, cells_name_what_there_is);
     suite_add_tcase(suite, tc);
     tc = tcase_create("words");
+    tcase_add_test(tc, a_row_names_its_command);
     tcase_add_test(tc, the_reason_is_the_right_one);
     suite_add_tcase(suite, tc);
     return suite;
