@@ -291,26 +291,35 @@ lc_status lc_claim_noise(double *c, lc_session *session, const lc_claim *claim, 
     return noise_of(c, session, &s, err);
 }
 
-lc_status lc_judge_look(lc_look *out, const lc_film *film, const lc_film *other, const lc_expected *expected,
-                        const unsigned char *skip, lc_estimate *field, lc_pyramid_plan *plan, double margin,
-                        double tolerance, lc_error *err)
+/* The differences of one channel, those of pixels that are left out being none. */
+static lc_status fill_field(lc_estimate *field, const lc_comparison *what, int channel, double scale, lc_error *err)
 {
+    const lc_film *film = what->film;
+    double tolerance = what->tolerance * scale;
+    lc_status status = what->other ? lc_field_two(field, film, what->other, channel, tolerance, err)
+                                   : lc_field_one(field, film, what->expected->rgb, channel, tolerance, err);
+    for (size_t i = 0; what->skip && i < (size_t)film->width * (size_t)film->height; ++i)
+        if (what->skip[i])
+            field[i] = lc_estimate_zero();
+    return status;
+}
+
+lc_status lc_judge_look(lc_look *out, const lc_comparison *what, lc_estimate *field, lc_pyramid_plan *plan, lc_error *err)
+{
+    int width = what->film->width, height = what->film->height;
     double most = -1;
     out->verdict = LC_PASS;
     for (int c = 0; c < 3; ++c) {
         lc_pyramid pyramid;
-        double scale = lc_claim_mean(other, expected, skip, c);
+        double scale = lc_claim_mean(what->other, what->expected, what->skip, c);
         /* Where nothing is expected, any light at all is wrong by infinitely many percent: the margin is then of what was seen. */
-        double unit = scale > 0 ? scale : lc_claim_mean(film, NULL, skip, c);
-        plan->margin[lc_pyramid_levels(film->width, film->height) - 1] = unit > 0 ? margin * unit : INFINITY;
-        plan->relative = other ? margin : 0;
-        lc_status status = other ? lc_field_two(field, film, other, c, tolerance * scale, err)
-                                 : lc_field_one(field, film, expected->rgb, c, tolerance * scale, err);
-        for (size_t i = 0; skip && i < (size_t)film->width * (size_t)film->height; ++i)
-            if (skip[i])
-                field[i] = lc_estimate_zero();
+        double unit = scale > 0 ? scale : lc_claim_mean(what->film, NULL, what->skip, c);
+        plan->margin[lc_pyramid_levels(width, height) - 1] = unit > 0 ? what->margin * unit : INFINITY;
+        plan->relative = what->other ? what->margin : 0;
+        lc_status status = fill_field(field, what, c, scale, err);
         if (status == LC_OK)
-            status = lc_pyramid_judge(&pyramid, field, film->width, film->height, plan, err);
+            status = what->tiles ? lc_pyramid_judge_tiles(&pyramid, field, width, height, what->tiles, c, plan, err)
+                                 : lc_pyramid_judge(&pyramid, field, width, height, plan, err);
         if (status != LC_OK)
             return status;
         out->verdict = lc_verdict_both(out->verdict, pyramid.verdict);
@@ -405,8 +414,8 @@ static lc_status walk(lc_row *row, lc_session *session, const lc_claim *claim, c
             show(session, row, film, other, expected);
             return LC_OK;
         }
-        status = lc_judge_look(&result, film, other, expected, expected ? expected->skip : NULL, field, &way->plan,
-                               row->margin, claim->tolerance, err);
+        lc_comparison comparison = {film, other, expected, expected ? expected->skip : NULL, NULL, row->margin, claim->tolerance};
+        status = lc_judge_look(&result, &comparison, field, &way->plan, err);
         if (status != LC_OK)
             return status;
         int is_noisy = result.hardest.whole.student.error > way->noise * result.scale;

@@ -17,7 +17,8 @@ lc_status lc_compare_films(lc_row *row, const lc_film *a, const lc_film *b, doub
         return lc_fail(err, LC_FAULT, "out of memory for the differences");
     lc_pyramid_plan_init(&plan, lc_budget_row_fail(&budget), lc_budget_row_pass(&budget));
     lc_look result;
-    lc_status status = lc_judge_look(&result, a, b, NULL, NULL, field, &plan, margin, 0.0, err);
+    lc_comparison comparison = {a, b, NULL, NULL, NULL, margin, 0};
+    lc_status status = lc_judge_look(&result, &comparison, field, &plan, err);
     free(field);
     if (status != LC_OK)
         return status;

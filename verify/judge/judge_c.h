@@ -96,11 +96,17 @@ typedef struct lc_look {
     double scale; /* what 1 is [radiance] */
 } lc_look;
 
-/* Holds the film against `other` or, where that is NULL, against `expected`, without the pixels of `skip` (may be NULL); `margin` and
- * `tolerance` are relative to the mean of what it is held against. `field` has room for the differences of one channel. */
-lc_status lc_judge_look(lc_look *out, const lc_film *film, const lc_film *other, const lc_expected *expected,
-                        const unsigned char *skip, lc_estimate *field, lc_pyramid_plan *plan, double margin,
-                        double tolerance, lc_error *err);
+/* A film and what it is held against. */
+typedef struct lc_comparison {
+    const lc_film *film, *other;
+    const lc_expected *expected; /* where `other` is NULL */
+    const unsigned char *skip;   /* pixels that are left out; may be NULL */
+    lc_pixel *const *tiles;      /* of images whose pixels may move together, see tiles.h; NULL: pixels are independent */
+    double margin, tolerance;    /* relative to the mean of what it is held against */
+} lc_comparison;
+
+/* `field` has room for the differences of one channel. */
+lc_status lc_judge_look(lc_look *out, const lc_comparison *what, lc_estimate *field, lc_pyramid_plan *plan, lc_error *err);
 /* Verdict, numbers and words of the last look. */
 void lc_row_conclude(lc_row *row, const lc_look *look, double alpha_pass);
 

@@ -6,7 +6,7 @@
 set -eu
 cd "$(dirname "$0")/../.."
 what=judge
-judge='judge_mutants stats_estimate stats_pyramid stats film' shown='pictures/core exr/films verify/words'
+judge='judge_mutants stats_estimate stats_pyramid stats_tiles stats film' shown='pictures/core exr/films verify/words'
 suites="$judge $shown"
 . verify/tests/wrong_copy.sh
 suites=$judge
@@ -47,6 +47,15 @@ mutant tiles_not_paid_for $pyramid 's|plan->alpha_fail / out->levels / tiles|pla
 mutant levels_not_paid_for $pyramid 's|plan->alpha_fail / out->levels / tiles|plan->alpha_fail / tiles|; s/log(2 \* tiles \* out->levels)/log(2 * tiles)/'
 mutant one_side_not_paid_for $pyramid 's/log(2 \* tiles \* out->levels)/log(tiles * out->levels)/'
 mutant tolerance_ignored $pyramid 's/double bound = side == LC_LOW ? -s->tolerance : s->tolerance,/double bound = 0,/'
+
+# Images whose pixels move together.
+tiles=verify/stats/tiles.c
+mutant spread_of_tiles_ignored $tiles 's/arm->variance = fmax(arm->variance, own->variance);//' stats_tiles
+mutant degrees_of_the_pixels $tiles 's/arm->variance2 = fmax(.*;//' stats_tiles
+mutant third_moment_of_the_pixels $tiles 's/arm->third = own->third;/(void)channel;/' stats_tiles
+mutant third_moment_always_the_images $tiles 's/if (is_together(arm, own, n) && /if (/' stats_tiles
+mutant one_level_fails_at_the_budget_of_all $tiles 's|plan->alpha_fail \* (levels - level) / levels|plan->alpha_fail|' stats_tiles
+mutant images_taken_as_independent verify/judge/foreign.c 's/r->skip, f->tiles, row->margin/r->skip, NULL, row->margin/' adapter/images
 
 # The budget.
 mutant looks_not_paid_for $budget 's|b->fail / ((double)b->rows \* b->channels \* b->looks)|b->fail / ((double)b->rows * b->channels)|'
