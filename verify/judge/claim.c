@@ -95,7 +95,7 @@ double lc_row_hardness(const lc_pyramid *p, double scale)
 void lc_row_conclude(lc_row *row, const lc_look *look, double alpha_pass)
 {
     row->verdict = look->verdict == LC_PASS ? LC_ROW_PASS : look->verdict == LC_FAIL ? LC_ROW_FAIL : LC_ROW_UNDECIDED;
-    fill_numbers(row, &look->hardest, look->channel, look->scale, alpha_pass, (double)row->paths);
+    fill_numbers(row, &look->hardest, look->channel, look->scale, alpha_pass, look->share * (double)row->paths);
     describe(row, &look->hardest);
 }
 
@@ -309,6 +309,7 @@ lc_status lc_judge_look(lc_look *out, const lc_comparison *what, lc_estimate *fi
     int width = what->film->width, height = what->film->height;
     double most = -1;
     out->verdict = LC_PASS;
+    out->share = lc_claim_share(what->skip, width * height);
     for (int c = 0; c < 3; ++c) {
         lc_pyramid pyramid;
         double scale = lc_claim_mean(what->other, what->expected, what->skip, c);

@@ -94,6 +94,7 @@ typedef struct lc_look {
     lc_pyramid hardest;
     int channel;
     double scale; /* what 1 is [radiance] */
+    double share; /* of the pixels, that were not left out */
 } lc_look;
 
 /* A film and what it is held against. */

@@ -68,6 +68,7 @@ static lc_status judge_look(lc_look *out, const lc_film *film, const lc_film *di
 {
     double most = -1;
     out->verdict = LC_PASS;
+    out->share = 1;
     for (int c = 0; c < 3; ++c) {
         lc_pyramid pyramid;
         terms_mean terms = mean_of_terms(film, difference, c);

@@ -88,6 +88,8 @@ mutant margin_not_said verify/judge/reproduce.c 's/if (o->margin > 0)/if (0)/' v
 mutant file_not_quoted verify/judge/reproduce.c 's/lc_shell_word(word, whole)/whole/; s/char word.*, whole/char whole/' verify/words
 
 # What a PASS excludes.
+mutant missed_by_samples_of_a_pixel $claim 's/look->share \* (double)row->paths/look->share * (double)row->samples/'
+mutant missed_counts_what_is_skipped $claim 's/look->share \* (double)row->paths/(double)row->paths/'
 mutant exact_row_excludes_everything $claim 's/row->missed = light > 0 ? .*;/row->missed = 0;/'
 mutant exact_row_counts_what_is_skipped $claim 's/share \* (double)row->paths, 1e-6/(double)row->paths, 1e-6/'
 

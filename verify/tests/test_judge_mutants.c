@@ -313,6 +313,23 @@ START_TEST(an_exact_pass_says_what_it_excludes)
 }
 END_TEST
 
+/* So does any other: of its own margin, and of all paths to pixels that count. */
+START_TEST(a_pass_says_what_it_excludes)
+{
+    const setup s = {16, 8, MARGIN, 0, 1e-6, 1e-6};
+    lc_estimator right = estimator_of("right", uniform_right), again = estimator_of("again", uniform_right);
+    lc_scene *scene = build_scene(16, 8);
+    for (int i = 0; i < 3; ++i) {
+        lc_claim claim = {.scene = scene, .estimator = &right, .expect = i == 0 ? expect : expect_half, .other = i == 2 ? &again : NULL};
+        lc_row row = judge_with(&s, claim, 1);
+        double pixels = i == 1 ? 64 : 128;
+        ck_assert_msg(row.verdict == LC_ROW_PASS && !row.exact, "%s", row.reason);
+        ck_assert_double_eq_tol(row.missed, row.margin * pixels * (double)row.samples / log(1e6), 1e-9 * row.missed);
+    }
+    lc_scene_free(scene);
+}
+END_TEST
+
 /* ---- error rates ------------------------------------------------------------------------------------------------ */
 
 /* All looks and channels together keep within a budget that a single one would fill, make use of it, and no row FAILs
@@ -459,6 +476,7 @@ Suite *lc_suite_judge_mutants(void)
     tcase_add_test(cases, undecided_is_not_a_pass);
     tcase_add_test(cases, the_last_look_is_taken);
     tcase_add_test(cases, an_exact_pass_says_what_it_excludes);
+    tcase_add_test(cases, a_pass_says_what_it_excludes);
     tcase_add_test(cases, every_look_is_paid_for);
     tcase_add_test(cases, every_pass_is_paid_for);
     tcase_add_test(cases, gaussian_tails_are_students);
