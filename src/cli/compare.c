@@ -39,7 +39,7 @@ static lc_status compare(void *user, const lc_strings *rest, lc_error *err)
         status = lc_fail(err, LC_BAD_INPUT, "%s is %d x %d pixels, %s is %d x %d: expected the same size", path_a,
                          a->width, a->height, path_b, b->width, b->height);
     if (status == LC_OK)
-        status = lc_compare_films(&row, a, b, margin, 1e-6, 1e-6, err);
+        status = lc_compare_files(&row, a, b, margin, 1e-6, 1e-6, err);
     lc_film_free(a);
     lc_film_free(b);
     if (status != LC_OK)

@@ -291,6 +291,12 @@ lc_status lc_claim_noise(double *c, lc_session *session, const lc_claim *claim, 
     return noise_of(c, session, &s, err);
 }
 
+/* Largest error of a pixel's mean that was rounded to float, subnormal ones included. */
+static double rounding_of(const lc_film *film, size_t pixel, int channel)
+{
+    return (1 + film->more_count) * (ldexp(fabs(film->pixels[pixel].c[channel].mean), -24) + ldexp(1, -150));
+}
+
 /* The differences of one channel, those of pixels that are left out being none. */
 static lc_status fill_field(lc_estimate *field, const lc_comparison *what, int channel, double scale, lc_error *err)
 {
@@ -298,9 +304,12 @@ static lc_status fill_field(lc_estimate *field, const lc_comparison *what, int c
     double tolerance = what->tolerance * scale;
     lc_status status = what->other ? lc_field_two(field, film, what->other, channel, tolerance, err)
                                    : lc_field_one(field, film, what->expected->rgb, channel, tolerance, err);
-    for (size_t i = 0; what->skip && i < (size_t)film->width * (size_t)film->height; ++i)
-        if (what->skip[i])
+    for (size_t i = 0; i < (size_t)film->width * (size_t)film->height; ++i) {
+        if (what->is_from_files)
+            field[i].tolerance += rounding_of(film, i, channel) + (what->other ? rounding_of(what->other, i, channel) : 0);
+        if (what->skip && what->skip[i])
             field[i] = lc_estimate_zero();
+    }
     return status;
 }
 
@@ -415,7 +424,7 @@ static lc_status walk(lc_row *row, lc_session *session, const lc_claim *claim, c
             show(session, row, film, other, expected);
             return LC_OK;
         }
-        lc_comparison comparison = {film, other, expected, expected ? expected->skip : NULL, NULL, row->margin, claim->tolerance};
+        lc_comparison comparison = {film, other, expected, expected ? expected->skip : NULL, NULL, row->margin, claim->tolerance, 0};
         status = lc_judge_look(&result, &comparison, field, &way->plan, err);
         if (status != LC_OK)
             return status;

@@ -320,7 +320,7 @@ static lc_status judge(lc_row *row, lc_session *session, const lc_claim *claim, 
         lc_pyramid_plan_init(&pyramid, lc_budget_row_fail(&budget), lc_budget_row_pass(&budget));
         if (claim->whole_only)
             lc_plan_whole(&pyramid, d->width, d->height);
-        lc_comparison comparison = {f->film, r->film, r->expected, r->skip, f->tiles, row->margin, tolerance};
+        lc_comparison comparison = {f->film, r->film, r->expected, r->skip, f->tiles, row->margin, tolerance, 0};
         status = lc_judge_look(&result, &comparison, field, &pyramid, err);
         if (status != LC_OK)
             return status;

@@ -108,5 +108,8 @@ uint32_t lc_session_arm(const lc_estimator *estimator);
 /* Decides whether two films of different streams have the same mean, within a relative margin of the second's mean. */
 lc_status lc_compare_films(lc_row *row, const lc_film *a, const lc_film *b, double margin, double false_fail,
                            double false_pass, lc_error *err);
+/* The same of films that were read from files, whose means were rounded to float: a difference that rounding explains is none. */
+lc_status lc_compare_files(lc_row *row, const lc_film *a, const lc_film *b, double margin, double false_fail,
+                           double false_pass, lc_error *err);
 
 #endif

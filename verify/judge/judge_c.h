@@ -104,6 +104,7 @@ typedef struct lc_comparison {
     const unsigned char *skip;   /* pixels that are left out; may be NULL */
     lc_pixel *const *tiles;      /* of images whose pixels may move together, see tiles.h; NULL: pixels are independent */
     double margin, tolerance;    /* relative to the mean of what it is held against */
+    int is_from_files;           /* 1: both films' means were rounded to float, as EXR keeps them, once more with each merge */
 } lc_comparison;
 
 /* `field` has room for the differences of one channel. */

@@ -83,6 +83,10 @@ mutant same_stream_twice $estimate 's/if (x.seed == y.seed \&\& /if (0 \&\& /'
 mutant first_stream_only $estimate 's/j <= b->more_count/j <= 0/'
 mutant third_moment_not_merged src/core/film.c 's/m->m3 += o->m3 + square/m->m3 += square/'
 
+# Images from files.
+mutant rounding_of_files_ignored $claim 's/if (what->is_from_files)/if (0)/' verify/words
+mutant rounding_once_for_all_merges $claim 's/return (1 + film->more_count) \* /return /' verify/words
+
 # The line that gives a row again.
 mutant margin_not_said verify/judge/reproduce.c 's/if (o->margin > 0)/if (0)/' verify/words
 mutant file_not_quoted verify/judge/reproduce.c 's/lc_shell_word(word, whole)/whole/; s/char word.*, whole/char whole/' verify/words
