@@ -33,9 +33,22 @@ static lc_status describe_missing(lc_row *row, const lc_error *err)
     return LC_OK;
 }
 
-static void describe(lc_row *row, const lc_pyramid *p)
+/* There is no percentage of nothing. */
+static void describe_light(lc_row *row, double mean)
 {
-    if (row->verdict == LC_ROW_FAIL) {
+    int length = snprintf(row->reason, sizeof row->reason, "%s on %s is wrong: there is light where none is expected, a mean of %.3g (%s)",
+                          row->estimator, row->scene, mean, channel_names[row->channel]);
+    if (row->tile_width)
+        snprintf(row->reason + length, sizeof row->reason - (size_t)length, ", most clearly in %dx%d pixels at %d,%d", row->tile_width,
+                 row->tile_height, row->tile_x, row->tile_y);
+}
+
+static void describe(lc_row *row, const lc_look *look)
+{
+    const lc_pyramid *p = &look->hardest;
+    if (row->verdict == LC_ROW_FAIL && look->is_dark) {
+        describe_light(row, look->scale);
+    } else if (row->verdict == LC_ROW_FAIL) {
         double whole = 100 * (row->ratio - 1);
         if (p->worst.level >= 0 && p->worst.level < p->levels - 1)
             snprintf(row->reason, sizeof row->reason,
@@ -96,7 +109,7 @@ void lc_row_conclude(lc_row *row, const lc_look *look, double alpha_pass)
 {
     row->verdict = look->verdict == LC_PASS ? LC_ROW_PASS : look->verdict == LC_FAIL ? LC_ROW_FAIL : LC_ROW_UNDECIDED;
     fill_numbers(row, &look->hardest, look->channel, look->scale, alpha_pass, look->share * (double)row->paths);
-    describe(row, &look->hardest);
+    describe(row, look);
 }
 
 void lc_row_show(const lc_session *session, lc_row *row, lc_exhibit evidence)
@@ -182,10 +195,11 @@ static void compare_exactly(lc_row *row, const lc_session *session, const lc_fil
             row->tile_x = (int)(i % (size_t)film->width);
             row->tile_y = (int)(i / (size_t)film->width);
             row->tile_width = row->tile_height = 1;
-            snprintf(row->reason, sizeof row->reason,
-                     "%s on %s is wrong: pixel %d,%d has %s = %.9g, expected exactly %.9g (%+.3g%%)", row->estimator,
-                     row->scene, (int)(i % (size_t)film->width), (int)(i / (size_t)film->width), channel_names[c], is,
-                     should, 100 * (is / should - 1));
+            int length = snprintf(row->reason, sizeof row->reason, "%s on %s is wrong: pixel %d,%d has %s = %.9g, expected exactly %.9g",
+                                  row->estimator, row->scene, (int)(i % (size_t)film->width), (int)(i / (size_t)film->width),
+                                  channel_names[c], is, should);
+            if (should != 0)
+                snprintf(row->reason + length, sizeof row->reason - (size_t)length, " (%+.3g%%)", 100 * (is / should - 1));
             return;
         }
     }
@@ -338,6 +352,7 @@ lc_status lc_judge_look(lc_look *out, const lc_comparison *what, lc_estimate *fi
             out->hardest = pyramid;
             out->channel = c;
             out->scale = unit;
+            out->is_dark = !(scale > 0);
         }
     }
     return LC_OK;

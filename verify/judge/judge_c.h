@@ -93,7 +93,8 @@ typedef struct lc_look {
     lc_verdict verdict; /* of all channels */
     lc_pyramid hardest;
     int channel;
-    double scale; /* what 1 is [radiance] */
+    double scale; /* what 1 is [radiance]: the mean of what is expected; */
+    int is_dark;  /* or, as nothing is, that of what was seen */
     double share; /* of the pixels, that were not left out */
 } lc_look;
 

@@ -89,6 +89,7 @@ static lc_status judge_look(lc_look *out, const lc_film *film, const lc_film *di
             out->hardest = pyramid;
             out->channel = c;
             out->scale = unit;
+            out->is_dark = 0;
         }
     }
     return LC_OK;

@@ -58,12 +58,21 @@ void lc_report_text_row(FILE *out, const lc_row *row)
             lc_row_verdict_name(row->verdict), estimate, interval, margin, paths, unseen);
 }
 
+static void print_tile(FILE *out, const lc_row *row)
+{
+    fprintf(out, "    worst tile: %dx%d pixels at %d,%d: ", row->tile_width, row->tile_height, row->tile_x, row->tile_y);
+    if (isfinite(row->tile_ratio))
+        fprintf(out, "%.4g times what is expected there", row->tile_ratio);
+    else
+        fprintf(out, "light where none is expected");
+    fprintf(out, ", p = 1e%.0f\n", row->tile_log10_p);
+}
+
 static void print_trouble(FILE *out, const lc_row *row)
 {
     fprintf(out, "    %s\n    expected: %s\n", row->reason, row->source);
     if (row->tile_width && !row->exact)
-        fprintf(out, "    worst tile: %dx%d pixels at %d,%d: %.4g times what is expected there, p = 1e%.0f\n",
-                row->tile_width, row->tile_height, row->tile_x, row->tile_y, row->tile_ratio, row->tile_log10_p);
+        print_tile(out, row);
     if (row->pictures[0])
         fprintf(out, "    pictures: %s.difference.png (red: too much, blue: too little), .is, .expected, .difference, each .exr and .png\n",
                 row->pictures);

@@ -523,6 +523,28 @@ START_TEST(compare_knows_that_files_are_rounded)
 }
 END_TEST
 
+/* A negative mean is none of good samples, in whichever image: it is named, and nothing is compared. */
+START_TEST(compare_names_a_bad_pixel)
+{
+    static const struct {
+        double value;
+        const char *words;
+    } bad[] = {{-0.5, "bad.exr: pixel 3,2 has G = -0.5, expected"}, {NAN, "bad.exr: pixel 3,2 has G = "}};
+    const char *good = in_folder("a.exr"), *path = in_folder("bad.exr");
+    lc_film *film;
+    write_still(good, 1, 0, 0);
+    for (int i = 0; i < 2; ++i) {
+        write_still(path, 2, 0, 0);
+        ck_assert_int_eq(lc_exr_read(&film, path, NULL), LC_OK);
+        film->pixels[2 * 8 + 3].c[1].mean = bad[i].value;
+        ck_assert_int_eq(lc_exr_write(path, film, NULL), LC_OK);
+        lc_film_free(film);
+        run_bad(WRONG, bad[i].words, "compare", good, path);
+        run_bad(WRONG, bad[i].words, "compare", path, good);
+    }
+}
+END_TEST
+
 /* Third moments travel in the file: different counts are decided, and the sum of small renders is. Without them nothing is. */
 START_TEST(compare_knows_the_tails)
 {
@@ -719,6 +741,7 @@ Suite *lc_suite_cli(void)
     tcase_add_checked_fixture(tc, make_folder, clean_folder);
     tcase_add_test(tc, compare_has_three_answers);
     tcase_add_test(tc, compare_knows_that_files_are_rounded);
+    tcase_add_test(tc, compare_names_a_bad_pixel);
     tcase_add_test(tc, compare_knows_the_tails);
     suite_add_tcase(suite, tc);
     tc = tcase_create("signals");

@@ -330,6 +330,30 @@ START_TEST(a_pass_says_what_it_excludes)
 }
 END_TEST
 
+static lc_status expect_black(lc_expected *out, const lc_claim *claim, const lc_scene *scene, int threads, lc_error *err)
+{
+    (void)out, (void)claim, (void)scene, (void)threads, (void)err;
+    return LC_OK;
+}
+
+/* No percentage of nothing: of light where none is expected the mean is told. */
+START_TEST(light_where_none_is_expected_is_said)
+{
+    const setup s = {16, 8, MARGIN, 0, 1e-6, 1e-6};
+    lc_estimator noisy = estimator_of("noisy", uniform_right), calm = estimator_of("calm", still);
+    lc_scene *scene = build_scene(16, 8);
+    for (int exact = 0; exact < 2; ++exact) {
+        lc_claim claim = {.scene = scene, .estimator = exact ? &calm : &noisy, .expect = expect_black, .exact = exact};
+        lc_row row = judge_with(&s, claim, 1);
+        ck_assert_int_eq(row.verdict, LC_ROW_FAIL);
+        ck_assert_ptr_nonnull(strstr(row.reason, exact ? "pixel 0,0 has R = 1, expected exactly 0"
+                                                       : "is wrong: there is light where none is expected, a mean of 1 ("));
+        ck_assert_msg(!strchr(row.reason, '%') && !strstr(row.reason, "inf"), "%s", row.reason);
+    }
+    lc_scene_free(scene);
+}
+END_TEST
+
 /* ---- error rates ------------------------------------------------------------------------------------------------ */
 
 /* All looks and channels together keep within a budget that a single one would fill, make use of it, and no row FAILs
@@ -477,6 +501,7 @@ Suite *lc_suite_judge_mutants(void)
     tcase_add_test(cases, the_last_look_is_taken);
     tcase_add_test(cases, an_exact_pass_says_what_it_excludes);
     tcase_add_test(cases, a_pass_says_what_it_excludes);
+    tcase_add_test(cases, light_where_none_is_expected_is_said);
     tcase_add_test(cases, every_look_is_paid_for);
     tcase_add_test(cases, every_pass_is_paid_for);
     tcase_add_test(cases, gaussian_tails_are_students);

@@ -203,7 +203,7 @@ START_TEST(text_tells_what_failed)
     ck_assert_ptr_nonnull(strstr(text, "exact"));
     ck_assert_ptr_nonnull(strstr(text, "(none yet)"));
     ck_assert_ptr_nonnull(strstr(text, "the budget\n"));
-    ck_assert_ptr_nonnull(strstr(text, "worst tile: 4x2 pixels at 8,16"));
+    ck_assert_ptr_nonnull(strstr(text, "worst tile: 4x2 pixels at 8,16: light where none is expected, p = "));
     ck_assert_ptr_nonnull(strstr(text, "again: build/lightcheck verify -e light_direct\n"));
     ck_assert_ptr_nonnull(strstr(text, "1.2M"));
     lc_row pass = {.verdict = LC_ROW_PASS, .missed = 1667, .low = 0.99, .high = 1.01}; /* 0.005 x 4.6 M / 13.8 */
