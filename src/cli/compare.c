@@ -1,10 +1,24 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "cli/commands.h"
 #include "io/exr.h"
 #include "verify/judge/judge.h"
+
+/* No mean of samples that are finite and not below 0: it is shown wrong, and no interval of it would say anything. */
+static lc_status check_image(const lc_film *film, const char *path, lc_error *err)
+{
+    for (int i = 0; i < film->width * film->height; ++i)
+        for (int c = 0; c < 3; ++c) {
+            double mean = film->pixels[i].c[c].mean;
+            if (!(mean >= 0 && isfinite(mean)))
+                return lc_fail(err, LC_WRONG, "%s: pixel %d,%d has %c = %g, expected a finite value >= 0", path, i % film->width,
+                               i / film->width, "RGB"[c], mean);
+        }
+    return LC_OK;
+}
 
 static lc_status read_image(lc_film **out, const char *path, lc_error *err)
 {
@@ -22,7 +36,12 @@ static lc_status read_image(lc_film **out, const char *path, lc_error *err)
             err, LC_BAD_INPUT,
             "%s: no channels `variance.R/G/B` and `samples`: without its own error an image cannot be judged", path);
     }
-    return LC_OK;
+    status = check_image(film, path, err);
+    if (status != LC_OK) {
+        lc_film_free(*out);
+        *out = NULL;
+    }
+    return status;
 }
 
 static lc_status compare(void *user, const lc_strings *rest, lc_error *err)
@@ -39,7 +58,7 @@ static lc_status compare(void *user, const lc_strings *rest, lc_error *err)
         status = lc_fail(err, LC_BAD_INPUT, "%s is %d x %d pixels, %s is %d x %d: expected the same size", path_a,
                          a->width, a->height, path_b, b->width, b->height);
     if (status == LC_OK)
-        status = lc_compare_films(&row, a, b, margin, 1e-6, 1e-6, err);
+        status = lc_compare_files(&row, a, b, margin, 1e-6, 1e-6, err);
     lc_film_free(a);
     lc_film_free(b);
     if (status != LC_OK)
@@ -72,6 +91,6 @@ const lc_command lc_command_compare = {
     "undecided.\n"
     "PASS (0): shown equal within the margin; FAIL (1): shown different, at any scale from pixel to "
     "image, at an\n"
-    "error probability of 1e-6; UNDECIDED (3): neither.\n",
+    "error probability of 1e-6, or a pixel negative or not finite; UNDECIDED (3): neither.\n",
     run,
 };

@@ -5,6 +5,8 @@
 #include "cli/commands.h"
 #include "io/exr.h"
 #include "io/png.h"
+#include "verify/renderers/program.h"
+#include "verify/report/safe.h"
 
 typedef struct render_arguments {
     const char *estimator, *size, *shard, *out;
@@ -45,26 +47,64 @@ static void name_of_bounce(char *out, size_t size, const char *path, int bounce)
     snprintf(out, size, "%.*s.%d%s", stem, path, bounce, dot ? dot : "");
 }
 
-static lc_status render_one(const lc_scene *scene, const lc_estimator *estimator, const lc_render_options *options,
-                            int width, int height, const char *path, double exposure, lc_error *err)
+/* Appends to a command line, each word quoted; `room` is that of the line. */
+static void add_word(char *line, size_t room, const char *before, const char *text)
 {
+    char word[LC_SHELL_WORD(LC_PROGRAM_PATH)], whole[LC_PROGRAM_PATH]; /* no longer path can be opened */
+    size_t length = strlen(line);
+    snprintf(whole, sizeof whole, "%s", text);
+    snprintf(line + length, room - length, "%s%s", before, lc_shell_word(word, whole));
+}
+
+static void add_count(char *line, size_t room, const char *before, uint64_t count)
+{
+    char text[32];
+    snprintf(text, sizeof text, "%llu", (unsigned long long)count);
+    add_word(line, room, before, text);
+}
+
+/* The command that replays the first bad sample of the film. */
+static void say_replay(char *line, size_t room, const render_arguments *a, const char *scene, const lc_film *film)
+{
+    char text[64];
+    snprintf(line, room, "lightcheck sample");
+    add_word(line, room, " ", scene);
+    add_word(line, room, " -e ", a->estimator);
+    snprintf(text, sizeof text, "%d,%d", film->bad_x, film->bad_y);
+    add_word(line, room, " --pixel ", text);
+    add_count(line, room, " --index ", film->bad_sample);
+    add_count(line, room, " --seed ", film->seed);
+    add_count(line, room, " --bounces ", (uint64_t)film->max_bounces);
+    if (film->min_bounces > 0)
+        add_count(line, room, " --min-bounces ", (uint64_t)film->min_bounces);
+    if (a->size)
+        add_word(line, room, " --size ", a->size);
+    for (int i = 0; i < a->definitions.count; ++i)
+        add_word(line, room, " -D ", a->definitions.items[i]);
+}
+
+static lc_status render_one(const lc_scene *scene, const lc_estimator *estimator, const lc_render_options *options,
+                            int width, int height, const char *path, const render_arguments *a, const char *scene_name,
+                            lc_error *err)
+{
+    char replay[sizeof err->text];
     lc_film *film;
     lc_status status = lc_film_create(&film, width, height, err);
     if (status != LC_OK)
         return status;
     status = lc_render(film, scene, estimator, options, err);
     if (status == LC_OK)
-        status = write_image(path, film, exposure, err);
+        status = write_image(path, film, a->exposure, err);
     if (status == LC_OK)
         print_summary(film, path);
-    if (status == LC_OK && film->bad)
+    if (status == LC_OK && film->bad) {
+        say_replay(replay, sizeof replay, a, scene_name, film);
         status = lc_fail(err, LC_WRONG,
                          "%s: %llu samples are NaN, infinite or negative (written as 0), the first (%g, %g, %g) at "
-                         "pixel %d,%d; see it with "
-                         "`lightcheck sample %s -e %s --pixel %d,%d --index %llu --seed %llu`",
+                         "pixel %d,%d; see it with `%s`",
                          path, (unsigned long long)film->bad, film->bad_value[0], film->bad_value[1],
-                         film->bad_value[2], film->bad_x, film->bad_y, film->scene, film->estimator, film->bad_x,
-                         film->bad_y, (unsigned long long)film->bad_sample, (unsigned long long)film->seed);
+                         film->bad_value[2], film->bad_x, film->bad_y, replay);
+    }
     lc_film_free(film);
     return status;
 }
@@ -107,10 +147,10 @@ static lc_status render(void *user, const lc_strings *rest, lc_error *err)
         lc_render_options term = options;
         term.min_bounces = term.max_bounces = k;
         name_of_bounce(path, sizeof path, out, k);
-        status = render_one(scene, estimator, &term, width, height, path, a->exposure, err);
+        status = render_one(scene, estimator, &term, width, height, path, a, scene_name, err);
     }
     if (status == LC_OK && !a->by_bounce)
-        status = render_one(scene, estimator, &options, width, height, out, a->exposure, err);
+        status = render_one(scene, estimator, &options, width, height, out, a, scene_name, err);
     lc_scene_free(scene);
     return status;
 }

@@ -109,8 +109,7 @@ static void print_line(void *user, const char *text)
 }
 
 /* The estimator under test: a name, a file in the open, or a file in a jail. */
-static lc_status open_estimator(lc_verify_options *options, lc_jail **jail, char *given, size_t size,
-                                const verify_arguments *a, lc_error *err)
+static lc_status open_estimator(lc_verify_options *options, lc_jail **jail, const verify_arguments *a, lc_error *err)
 {
     *jail = NULL;
     if (a->jail && (!a->estimator || !lc_is_source(a->estimator)))
@@ -122,8 +121,7 @@ static lc_status open_estimator(lc_verify_options *options, lc_jail **jail, char
         return status;
     lc_plain_lines(stderr, lc_jail_messages(*jail), "");
     options->estimator = lc_jail_estimator(*jail);
-    snprintf(given, size, "%s --jail", a->estimator);
-    options->given = given;
+    options->is_jailed = 1;
     return LC_OK;
 }
 
@@ -174,7 +172,6 @@ static lc_status verify(void *user, const lc_strings *rest, lc_error *err)
     lc_adapter adapter;
     lc_jail *jail = NULL;
     album pictures;
-    char given[200];
     lc_verify_options_init(&options);
     options.suite = lc_suite_find(a->suite);
     options.margin = a->margin;
@@ -194,7 +191,7 @@ static lc_status verify(void *user, const lc_strings *rest, lc_error *err)
     if (status == LC_OK && a->renderer && a->estimator)
         status = lc_fail(err, LC_BAD_INPUT, "--renderer and -e: one or the other is put to the test");
     if (status == LC_OK)
-        status = open_estimator(&options, &jail, given, sizeof given, a, err);
+        status = open_estimator(&options, &jail, a, err);
     if (status == LC_OK && a->renderer)
         status = lc_adapter_open(&adapter, a->renderer, a->seconds, err);
     if (status == LC_OK && a->renderer) {
@@ -225,7 +222,7 @@ static lc_status verify(void *user, const lc_strings *rest, lc_error *err)
 
 static int run(const lc_command *self, int argc, char **argv)
 {
-    verify_arguments a = {.suite = "quick", .seed = "1", .format = "text", .budget = 1e-6, .seconds = 600};
+    verify_arguments a = {.suite = "quick", .seed = "1", .format = "text", .budget = 1e-6, .seconds = LC_ADAPTER_SECONDS};
     const lc_option options[] = {
         {0, "suite", LC_OPT_CHOICE, &a.suite, "quick|full|proof",
          "margins 0.5%, 0.25% or (hours) 0.05% times max(1, c); default quick", 0, 0, "quick|full|proof"},

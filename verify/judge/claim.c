@@ -33,9 +33,22 @@ static lc_status describe_missing(lc_row *row, const lc_error *err)
     return LC_OK;
 }
 
-static void describe(lc_row *row, const lc_pyramid *p)
+/* There is no percentage of nothing. */
+static void describe_light(lc_row *row, double mean)
 {
-    if (row->verdict == LC_ROW_FAIL) {
+    int length = snprintf(row->reason, sizeof row->reason, "%s on %s is wrong: there is light where none is expected, a mean of %.3g (%s)",
+                          row->estimator, row->scene, mean, channel_names[row->channel]);
+    if (row->tile_width)
+        snprintf(row->reason + length, sizeof row->reason - (size_t)length, ", most clearly in %dx%d pixels at %d,%d", row->tile_width,
+                 row->tile_height, row->tile_x, row->tile_y);
+}
+
+static void describe(lc_row *row, const lc_look *look)
+{
+    const lc_pyramid *p = &look->hardest;
+    if (row->verdict == LC_ROW_FAIL && look->is_dark) {
+        describe_light(row, look->scale);
+    } else if (row->verdict == LC_ROW_FAIL) {
         double whole = 100 * (row->ratio - 1);
         if (p->worst.level >= 0 && p->worst.level < p->levels - 1)
             snprintf(row->reason, sizeof row->reason,
@@ -95,8 +108,8 @@ double lc_row_hardness(const lc_pyramid *p, double scale)
 void lc_row_conclude(lc_row *row, const lc_look *look, double alpha_pass)
 {
     row->verdict = look->verdict == LC_PASS ? LC_ROW_PASS : look->verdict == LC_FAIL ? LC_ROW_FAIL : LC_ROW_UNDECIDED;
-    fill_numbers(row, &look->hardest, look->channel, look->scale, alpha_pass, (double)row->paths);
-    describe(row, &look->hardest);
+    fill_numbers(row, &look->hardest, look->channel, look->scale, alpha_pass, look->share * (double)row->paths);
+    describe(row, look);
 }
 
 void lc_row_show(const lc_session *session, lc_row *row, lc_exhibit evidence)
@@ -133,14 +146,39 @@ double lc_claim_mean(const lc_film *film, const lc_expected *expected, const uns
     return used ? sum / (double)used : 0;
 }
 
+double lc_claim_share(const unsigned char *skip, int pixels)
+{
+    int used = 0;
+    for (int i = 0; i < pixels; ++i)
+        used += !(skip && skip[i]);
+    return (double)used / pixels;
+}
+
 /* ---- exact claims ----------------------------------------------------------------------------------------------- */
 
+void lc_row_settle(lc_row *row, const lc_session *session, double share, double light)
+{
+    row->exact = 1;
+    row->verdict = LC_ROW_PASS;
+    row->missed = light > 0 ? lc_missed_value(session->margin, share * (double)row->paths, 1e-6) : 0;
+}
+
+/* The largest of three channels' means. */
+static double light_of(const lc_film *film, const lc_expected *expected, const unsigned char *skip)
+{
+    double most = 0;
+    for (int c = 0; c < 3; ++c)
+        most = fmax(most, lc_claim_mean(film, expected, skip, c));
+    return most;
+}
+
 /* Pixel by pixel, against the other film's or the expected values. */
-static void compare_exactly(lc_row *row, const lc_film *film, const lc_film *other, const lc_expected *expected,
-                            double tolerance)
+static void compare_exactly(lc_row *row, const lc_session *session, const lc_film *film, const lc_film *other,
+                            const lc_expected *expected, double tolerance)
 {
     size_t count = (size_t)film->width * (size_t)film->height;
-    row->verdict = LC_ROW_PASS;
+    const unsigned char *skip = expected ? expected->skip : NULL;
+    lc_row_settle(row, session, lc_claim_share(skip, film->width * film->height), light_of(other, expected, skip));
     for (size_t i = 0; i < count; ++i) {
         for (int c = 0; c < 3; ++c) {
             if (expected && expected->skip[i])
@@ -150,16 +188,18 @@ static void compare_exactly(lc_row *row, const lc_film *film, const lc_film *oth
             if (lc_decide_exact(is - should, tolerance * fabs(should)) == LC_PASS)
                 continue;
             row->verdict = LC_ROW_FAIL;
+            row->missed = 0;
             row->channel = c;
             row->expected = should;
             row->ratio = row->tile_ratio = is / should;
             row->tile_x = (int)(i % (size_t)film->width);
             row->tile_y = (int)(i / (size_t)film->width);
             row->tile_width = row->tile_height = 1;
-            snprintf(row->reason, sizeof row->reason,
-                     "%s on %s is wrong: pixel %d,%d has %s = %.9g, expected exactly %.9g (%+.3g%%)", row->estimator,
-                     row->scene, (int)(i % (size_t)film->width), (int)(i / (size_t)film->width), channel_names[c], is,
-                     should, 100 * (is / should - 1));
+            int length = snprintf(row->reason, sizeof row->reason, "%s on %s is wrong: pixel %d,%d has %s = %.9g, expected exactly %.9g",
+                                  row->estimator, row->scene, (int)(i % (size_t)film->width), (int)(i / (size_t)film->width),
+                                  channel_names[c], is, should);
+            if (should != 0)
+                snprintf(row->reason + length, sizeof row->reason - (size_t)length, " (%+.3g%%)", 100 * (is / should - 1));
             return;
         }
     }
@@ -186,7 +226,7 @@ static lc_status judge_exact(lc_row *row, lc_session *session, const lc_claim *c
     if (film->bad)
         lc_row_bad(row, film, session->options->seed);
     else
-        compare_exactly(row, film, other, expected, claim->tolerance);
+        compare_exactly(row, session, film, other, expected, claim->tolerance);
     show(session, row, film, other, expected);
     return LC_OK;
 }
@@ -265,26 +305,45 @@ lc_status lc_claim_noise(double *c, lc_session *session, const lc_claim *claim, 
     return noise_of(c, session, &s, err);
 }
 
-lc_status lc_judge_look(lc_look *out, const lc_film *film, const lc_film *other, const lc_expected *expected,
-                        const unsigned char *skip, lc_estimate *field, lc_pyramid_plan *plan, double margin,
-                        double tolerance, lc_error *err)
+/* Largest error of a pixel's mean that was rounded to float, subnormal ones included. */
+static double rounding_of(const lc_film *film, size_t pixel, int channel)
 {
+    return (1 + film->more_count) * (ldexp(fabs(film->pixels[pixel].c[channel].mean), -24) + ldexp(1, -150));
+}
+
+/* The differences of one channel, those of pixels that are left out being none. */
+static lc_status fill_field(lc_estimate *field, const lc_comparison *what, int channel, double scale, lc_error *err)
+{
+    const lc_film *film = what->film;
+    double tolerance = what->tolerance * scale;
+    lc_status status = what->other ? lc_field_two(field, film, what->other, channel, tolerance, err)
+                                   : lc_field_one(field, film, what->expected->rgb, channel, tolerance, err);
+    for (size_t i = 0; i < (size_t)film->width * (size_t)film->height; ++i) {
+        if (what->is_from_files)
+            field[i].tolerance += rounding_of(film, i, channel) + (what->other ? rounding_of(what->other, i, channel) : 0);
+        if (what->skip && what->skip[i])
+            field[i] = lc_estimate_zero();
+    }
+    return status;
+}
+
+lc_status lc_judge_look(lc_look *out, const lc_comparison *what, lc_estimate *field, lc_pyramid_plan *plan, lc_error *err)
+{
+    int width = what->film->width, height = what->film->height;
     double most = -1;
     out->verdict = LC_PASS;
+    out->share = lc_claim_share(what->skip, width * height);
     for (int c = 0; c < 3; ++c) {
         lc_pyramid pyramid;
-        double scale = lc_claim_mean(other, expected, skip, c);
+        double scale = lc_claim_mean(what->other, what->expected, what->skip, c);
         /* Where nothing is expected, any light at all is wrong by infinitely many percent: the margin is then of what was seen. */
-        double unit = scale > 0 ? scale : lc_claim_mean(film, NULL, skip, c);
-        plan->margin[lc_pyramid_levels(film->width, film->height) - 1] = unit > 0 ? margin * unit : INFINITY;
-        plan->relative = other ? margin : 0;
-        lc_status status = other ? lc_field_two(field, film, other, c, tolerance * scale, err)
-                                 : lc_field_one(field, film, expected->rgb, c, tolerance * scale, err);
-        for (size_t i = 0; skip && i < (size_t)film->width * (size_t)film->height; ++i)
-            if (skip[i])
-                field[i] = lc_estimate_zero();
+        double unit = scale > 0 ? scale : lc_claim_mean(what->film, NULL, what->skip, c);
+        plan->margin[lc_pyramid_levels(width, height) - 1] = unit > 0 ? what->margin * unit : INFINITY;
+        plan->relative = what->other ? what->margin : 0;
+        lc_status status = fill_field(field, what, c, scale, err);
         if (status == LC_OK)
-            status = lc_pyramid_judge(&pyramid, field, film->width, film->height, plan, err);
+            status = what->tiles ? lc_pyramid_judge_tiles(&pyramid, field, width, height, what->tiles, c, plan, err)
+                                 : lc_pyramid_judge(&pyramid, field, width, height, plan, err);
         if (status != LC_OK)
             return status;
         out->verdict = lc_verdict_both(out->verdict, pyramid.verdict);
@@ -293,6 +352,7 @@ lc_status lc_judge_look(lc_look *out, const lc_film *film, const lc_film *other,
             out->hardest = pyramid;
             out->channel = c;
             out->scale = unit;
+            out->is_dark = !(scale > 0);
         }
     }
     return LC_OK;
@@ -373,16 +433,14 @@ static lc_status walk(lc_row *row, lc_session *session, const lc_claim *claim, c
         int is_bad = film->bad || (other && other->bad);
         if (is_bad)
             lc_row_bad(row, film->bad ? film : other, session->options->seed);
-        else if (claim->may_be_still && expected && is_still(film, expected)) {
-            row->exact = 1;
-            compare_exactly(row, film, NULL, expected, fmax(claim->tolerance, 1e-9));
-        }
+        else if (claim->may_be_still && expected && is_still(film, expected))
+            compare_exactly(row, session, film, NULL, expected, fmax(claim->tolerance, 1e-9));
         if (is_bad || row->exact) {
             show(session, row, film, other, expected);
             return LC_OK;
         }
-        status = lc_judge_look(&result, film, other, expected, expected ? expected->skip : NULL, field, &way->plan,
-                               row->margin, claim->tolerance, err);
+        lc_comparison comparison = {film, other, expected, expected ? expected->skip : NULL, NULL, row->margin, claim->tolerance, 0};
+        status = lc_judge_look(&result, &comparison, field, &way->plan, err);
         if (status != LC_OK)
             return status;
         int is_noisy = result.hardest.whole.student.error > way->noise * result.scale;
@@ -449,19 +507,16 @@ static lc_status judge_by_itself(lc_row *row, lc_session *session, const lc_clai
 
 static lc_status judge_host(lc_row *row, lc_session *session, const lc_claim *claim, lc_error *err)
 {
-    const lc_verify_options *o = session->options;
     snprintf(row->check, sizeof row->check, "%s", claim->check->name);
     snprintf(row->scene, sizeof row->scene, "%s", claim->subject);
     snprintf(row->estimator, sizeof row->estimator, "host");
     snprintf(row->source, sizeof row->source, "%s", claim->source);
-    snprintf(row->reproduce, sizeof row->reproduce, "%s verify --suite %s -c %s --seed %llu", o->program,
-             o->suite->name, row->check, (unsigned long long)o->seed);
+    lc_row_reproduce(row, session->options, claim);
     return judge_by_itself(row, session, claim, 0, err);
 }
 
 lc_status lc_judge_claim(lc_row *row, lc_session *session, const lc_claim *claim, lc_error *err)
 {
-    const lc_verify_options *o = session->options;
     if (!claim->scene)
         return judge_host(row, session, claim, err);
     const lc_scene_desc *desc = lc_scene_description(claim->scene);
@@ -470,13 +525,7 @@ lc_status lc_judge_claim(lc_row *row, lc_session *session, const lc_claim *claim
              claim->relation ? claim->relation : "");
     snprintf(row->estimator, sizeof row->estimator, "%s", claim->estimator->name);
     snprintf(row->source, sizeof row->source, "%s", claim->source);
-    snprintf(row->reproduce, sizeof row->reproduce, "%s verify --suite %s -c %s -e %s --scene %s --seed %llu",
-             o->program, o->suite->name, row->check,
-             o->given && claim->estimator == o->estimator ? o->given : row->estimator, desc->name,
-             (unsigned long long)o->seed);
-    if (lc_is_foreign(session, claim->estimator))
-        snprintf(row->reproduce, sizeof row->reproduce, "%s verify --suite %s -c %s --renderer %.300s --scene %s --seed %llu",
-                 o->program, o->suite->name, row->check, o->renderer->path, desc->name, (unsigned long long)o->seed);
+    lc_row_reproduce(row, session->options, claim);
     row->exact = claim->exact;
     row->min_bounces = claim->min_bounces;
     row->max_bounces = claim->max_bounces;

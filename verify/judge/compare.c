@@ -7,8 +7,8 @@
 
 #include "verify/judge/judge_c.h"
 
-lc_status lc_compare_films(lc_row *row, const lc_film *a, const lc_film *b, double margin, double false_fail,
-                           double false_pass, lc_error *err)
+static lc_status compare(lc_row *row, const lc_film *a, const lc_film *b, int is_from_files, double margin, double false_fail,
+                         double false_pass, lc_error *err)
 {
     lc_budget budget = {false_fail, false_pass, 1, 3, 1};
     lc_pyramid_plan plan;
@@ -17,7 +17,8 @@ lc_status lc_compare_films(lc_row *row, const lc_film *a, const lc_film *b, doub
         return lc_fail(err, LC_FAULT, "out of memory for the differences");
     lc_pyramid_plan_init(&plan, lc_budget_row_fail(&budget), lc_budget_row_pass(&budget));
     lc_look result;
-    lc_status status = lc_judge_look(&result, a, b, NULL, NULL, field, &plan, margin, 0.0, err);
+    lc_comparison comparison = {a, b, NULL, NULL, NULL, margin, 0, is_from_files};
+    lc_status status = lc_judge_look(&result, &comparison, field, &plan, err);
     free(field);
     if (status != LC_OK)
         return status;
@@ -37,4 +38,16 @@ lc_status lc_compare_films(lc_row *row, const lc_film *a, const lc_film *b, doub
     row->paths = a->count * (uint64_t)a->width * (uint64_t)a->height;
     lc_row_conclude(row, &result, plan.alpha_pass);
     return LC_OK;
+}
+
+lc_status lc_compare_films(lc_row *row, const lc_film *a, const lc_film *b, double margin, double false_fail,
+                           double false_pass, lc_error *err)
+{
+    return compare(row, a, b, 0, margin, false_fail, false_pass, err);
+}
+
+lc_status lc_compare_files(lc_row *row, const lc_film *a, const lc_film *b, double margin, double false_fail,
+                           double false_pass, lc_error *err)
+{
+    return compare(row, a, b, 1, margin, false_fail, false_pass, err);
 }

@@ -5,7 +5,7 @@
  *
  * Reflected light is the image less L_0, which is known exactly: pixels where it is not one value (a lamp's edge) are left
  * out, for there the noise of the lamp is all that an image shows. Pixels of one image may move together; how much is
- * measured at each scale from the images themselves (lc_pyramid_plan.inflation).
+ * measured of each tile from the images themselves (verify/stats/tiles.h).
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,15 +16,10 @@
 /* Images before the first test, of a pilot, and the paths a pixel of its images. At a second look, four times as many. */
 enum { IMAGES = LC_LEAST_SAMPLES, PILOT_IMAGES = LC_BLOCK, PILOT_SAMPLES = 4, LOOKS = 2, MOST_FILMS = 32 };
 
-/* Mean and sum of squares of a tile's sum over the images. */
-typedef struct tile_spread {
-    double mean, m2;
-} tile_spread;
-
 typedef struct foreign_film {
     int min_bounces, max_bounces, samples, is_pilot;
     lc_film *film;
-    tile_spread *tiles[LC_LEVELS]; /* 3 a tile, row by row */
+    lc_pixel *tiles[LC_LEVELS]; /* what they show of tiles, see tiles.h */
 } foreign_film;
 
 typedef struct lc_foreign {
@@ -42,8 +37,7 @@ int lc_is_foreign(const lc_session *session, const lc_estimator *estimator)
 static void free_film(foreign_film *f)
 {
     lc_film_free(f->film);
-    for (int l = 0; l < LC_LEVELS; ++l)
-        free(f->tiles[l]);
+    lc_tiles_free(f->tiles);
 }
 
 void lc_foreign_free(lc_foreign *foreign)
@@ -93,8 +87,6 @@ static lc_status know_scene(lc_session *session, const lc_scene *scene, lc_error
 
 /* ---- films of images --------------------------------------------------------------------------------------------- */
 
-static int tiles_along(int pixels, int level) { return (pixels - 1) / (1 << level) + 1; }
-
 static lc_status make_film(foreign_film *f, const lc_scene *scene, lc_error *err)
 {
     const lc_scene_desc *d = lc_scene_description(scene);
@@ -102,12 +94,7 @@ static lc_status make_film(foreign_film *f, const lc_scene *scene, lc_error *err
     if (status != LC_OK)
         return status;
     f->film->has_third = 1;
-    for (int l = 0; l < lc_pyramid_levels(d->width, d->height); ++l) {
-        f->tiles[l] = calloc(3 * (size_t)tiles_along(d->width, l) * (size_t)tiles_along(d->height, l), sizeof *f->tiles[l]);
-        if (!f->tiles[l])
-            return lc_fail(err, LC_FAULT, "out of memory for the tiles of %s", d->name);
-    }
-    return LC_OK;
+    return lc_tiles_create(f->tiles, d->width, d->height, err);
 }
 
 /* Takes L_0 off, and what is left out. */
@@ -118,36 +105,10 @@ static void reflect(float *image, const lc_expected *glow)
             image[c] = glow->skip[i] ? 0 : (float)(image[c] - glow->rgb[c]);
 }
 
-static lc_status add_tiles(foreign_film *f, const float *image, double index, lc_error *err)
-{
-    int width = f->film->width, height = f->film->height;
-    for (int l = 0; l < LC_LEVELS && f->tiles[l]; ++l) {
-        int across = tiles_along(width, l);
-        size_t count = 3 * (size_t)across * (size_t)tiles_along(height, l);
-        double *sums = calloc(count, sizeof *sums);
-        if (!sums)
-            return lc_fail(err, LC_FAULT, "out of memory for the tiles of an image");
-        for (int y = 0; y < height; ++y)
-            for (int x = 0; x < width; ++x)
-                for (size_t c = 0; c < 3; ++c)
-                    sums[3 * ((size_t)(y >> l) * (size_t)across + (size_t)(x >> l)) + c] +=
-                        image[3 * ((size_t)y * (size_t)width + (size_t)x) + c];
-        for (size_t i = 0; i < count; ++i) {
-            tile_spread *t = &f->tiles[l][i];
-            double delta = sums[i] - t->mean;
-            t->mean += delta / (index + 1);
-            t->m2 += delta * (sums[i] - t->mean);
-        }
-        free(sums);
-    }
-    return LC_OK;
-}
-
 /* One block of images. */
-static lc_status add_images(foreign_film *f, const float *images, int count, lc_error *err)
+static void add_images(foreign_film *f, const float *images, int count)
 {
     size_t pixels = (size_t)f->film->width * (size_t)f->film->height;
-    lc_status status = LC_OK;
     for (size_t i = 0; i < pixels; ++i) {
         double block[LC_BLOCK][3];
         for (int k = 0; k < count; ++k)
@@ -155,10 +116,8 @@ static lc_status add_images(foreign_film *f, const float *images, int count, lc_
                 block[k][c] = images[3 * ((size_t)k * pixels + i) + c];
         lc_pixel_add(&f->film->pixels[i], (const double(*)[3])block, count);
     }
-    for (int k = 0; k < count && status == LC_OK; ++k)
-        status = add_tiles(f, images + 3 * (size_t)k * pixels, (double)f->film->count + k, err);
+    lc_tiles_add(f->tiles, f->film->width, f->film->height, images, count);
     f->film->count += (uint64_t)count;
-    return status;
 }
 
 /* Seeds of one film follow each other from a number of its own. */
@@ -183,7 +142,7 @@ static lc_status grow(lc_session *session, foreign_film *f, uint64_t images, lc_
         for (size_t k = 0; status == LC_OK && f->min_bounces > 0 && k < LC_BLOCK; ++k)
             reflect(rgb + k * floats, &known->glow);
         if (status == LC_OK)
-            status = add_images(f, rgb, LC_BLOCK, err);
+            add_images(f, rgb, LC_BLOCK);
         session->paths += (uint64_t)LC_BLOCK * (uint64_t)f->samples * floats / 3;
     }
     free(rgb);
@@ -218,24 +177,6 @@ static lc_status film_of(foreign_film **out, lc_session *session, const lc_claim
     return grow(session, f, images, err);
 }
 
-/* Variance of the tiles' sums over the sum of their pixels', of each level, in the channel where it is largest. */
-static void find_inflation(lc_pyramid_plan *plan, const foreign_film *f)
-{
-    size_t pixels = (size_t)f->film->width * (size_t)f->film->height;
-    for (size_t c = 0; c < 3; ++c) {
-        double alone = 0;
-        for (size_t i = 0; i < pixels; ++i)
-            alone += f->film->pixels[i].c[c].m2;
-        for (int l = 0; l < LC_LEVELS && f->tiles[l] && alone > 0; ++l) {
-            double together = 0;
-            size_t count = (size_t)tiles_along(f->film->width, l) * (size_t)tiles_along(f->film->height, l);
-            for (size_t i = 0; i < count; ++i)
-                together += f->tiles[l][3 * i + c].m2;
-            plan->inflation[l] = fmax(plan->inflation[l], together / alone);
-        }
-    }
-}
-
 /* ---- decisions --------------------------------------------------------------------------------------------------- */
 
 /* What the images are compared with. */
@@ -255,10 +196,12 @@ static int is_still(const lc_film *film, const unsigned char *skip, double slack
     return 1;
 }
 
-static void compare_still(lc_row *row, const lc_film *film, const reference *r, double tolerance, double slack)
+static void compare_still(lc_row *row, const lc_session *session, const lc_film *film, const reference *r, double tolerance, double slack)
 {
-    row->exact = 1;
-    row->verdict = LC_ROW_PASS;
+    double light = 0;
+    for (int c = 0; c < 3; ++c)
+        light = fmax(light, lc_claim_mean(r->film, r->expected, r->skip, c));
+    lc_row_settle(row, session, lc_claim_share(r->skip, film->width * film->height), light);
     for (size_t i = 0; i < (size_t)film->width * (size_t)film->height; ++i)
         for (size_t c = 0; c < 3 && !r->skip[i]; ++c) {
             double is = film->pixels[i].c[c].mean;
@@ -266,6 +209,7 @@ static void compare_still(lc_row *row, const lc_film *film, const reference *r, 
             if (lc_decide_exact(is - should, tolerance * fabs(should) + slack) == LC_PASS)
                 continue;
             row->verdict = LC_ROW_FAIL;
+            row->missed = 0;
             row->channel = (int)c;
             snprintf(row->reason, sizeof row->reason, "%s on %s is wrong: pixel %d,%d has %c = %.9g, expected %.9g",
                      row->estimator, row->scene, (int)(i % (size_t)film->width), (int)(i / (size_t)film->width), "RGB"[c],
@@ -367,7 +311,7 @@ static lc_status judge(lc_row *row, lc_session *session, const lc_claim *claim, 
         row->paths = row->samples * (uint64_t)d->width * (uint64_t)d->height;
         if ((claim->may_be_still || claim->exact) && is_still(f->film, r->skip, slack) &&
             (!r->film || is_still(r->film, r->skip, slack))) {
-            compare_still(row, f->film, r, tolerance, slack);
+            compare_still(row, session, f->film, r, tolerance, slack);
             lc_row_show(session, row, evidence_of(f->film, r));
             return LC_OK;
         }
@@ -376,8 +320,8 @@ static lc_status judge(lc_row *row, lc_session *session, const lc_claim *claim, 
         lc_pyramid_plan_init(&pyramid, lc_budget_row_fail(&budget), lc_budget_row_pass(&budget));
         if (claim->whole_only)
             lc_plan_whole(&pyramid, d->width, d->height);
-        find_inflation(&pyramid, f);
-        status = lc_judge_look(&result, f->film, r->film, r->expected, r->skip, field, &pyramid, row->margin, tolerance, err);
+        lc_comparison comparison = {f->film, r->film, r->expected, r->skip, f->tiles, row->margin, tolerance, 0};
+        status = lc_judge_look(&result, &comparison, field, &pyramid, err);
         if (status != LC_OK)
             return status;
     }

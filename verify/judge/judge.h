@@ -49,6 +49,7 @@ typedef struct lc_verify_options {
     int threads;
     const lc_estimator *estimator; /* only this one (it need not be in the registry), or NULL: all */
     const char *given;             /* how that was named on the command line; NULL: by its name */
+    int is_jailed;                 /* and that it was to be locked up */
     const char *check, *scene;     /* only these, or NULL */
     int shard, shards;             /* only every shards-th scene, from `shard` on, 0 <= shard < shards; what is said of the host
                                       counts as the first scene. 0 0: all */
@@ -106,6 +107,9 @@ uint32_t lc_session_arm(const lc_estimator *estimator);
 
 /* Decides whether two films of different streams have the same mean, within a relative margin of the second's mean. */
 lc_status lc_compare_films(lc_row *row, const lc_film *a, const lc_film *b, double margin, double false_fail,
+                           double false_pass, lc_error *err);
+/* The same of films that were read from files, whose means were rounded to float: a difference that rounding explains is none. */
+lc_status lc_compare_files(lc_row *row, const lc_film *a, const lc_film *b, double margin, double false_fail,
                            double false_pass, lc_error *err);
 
 #endif

@@ -82,19 +82,34 @@ lc_status lc_claim_noise(double *c, lc_session *session, const lc_claim *claim, 
                          lc_error *err);
 /* Mean over the pixels that are not skipped, of the film or else of the expected values. */
 double lc_claim_mean(const lc_film *film, const lc_expected *expected, const unsigned char *skip, int channel);
+/* Share of the pixels that are not skipped; `skip` may be NULL. */
+double lc_claim_share(const unsigned char *skip, int pixels);
+/* An exact row that passes, for all its samples agree. Such a test has no error that a budget could bound, but a contribution that no
+ * sample met is as invisible to it as to any other: the row says how large one of the run's margin has to be. `light`: the mean of what
+ * is expected; of black no contribution has a size. */
+void lc_row_settle(lc_row *row, const lc_session *session, double share, double light);
 /* What a look found, in the hardest of three channels. */
 typedef struct lc_look {
     lc_verdict verdict; /* of all channels */
     lc_pyramid hardest;
     int channel;
-    double scale; /* what 1 is [radiance] */
+    double scale; /* what 1 is [radiance]: the mean of what is expected; */
+    int is_dark;  /* or, as nothing is, that of what was seen */
+    double share; /* of the pixels, that were not left out */
 } lc_look;
 
-/* Holds the film against `other` or, where that is NULL, against `expected`, without the pixels of `skip` (may be NULL); `margin` and
- * `tolerance` are relative to the mean of what it is held against. `field` has room for the differences of one channel. */
-lc_status lc_judge_look(lc_look *out, const lc_film *film, const lc_film *other, const lc_expected *expected,
-                        const unsigned char *skip, lc_estimate *field, lc_pyramid_plan *plan, double margin,
-                        double tolerance, lc_error *err);
+/* A film and what it is held against. */
+typedef struct lc_comparison {
+    const lc_film *film, *other;
+    const lc_expected *expected; /* where `other` is NULL */
+    const unsigned char *skip;   /* pixels that are left out; may be NULL */
+    lc_pixel *const *tiles;      /* of images whose pixels may move together, see tiles.h; NULL: pixels are independent */
+    double margin, tolerance;    /* relative to the mean of what it is held against */
+    int is_from_files;           /* 1: both films' means were rounded to float, as EXR keeps them, once more with each merge */
+} lc_comparison;
+
+/* `field` has room for the differences of one channel. */
+lc_status lc_judge_look(lc_look *out, const lc_comparison *what, lc_estimate *field, lc_pyramid_plan *plan, lc_error *err);
 /* Verdict, numbers and words of the last look. */
 void lc_row_conclude(lc_row *row, const lc_look *look, double alpha_pass);
 
@@ -102,6 +117,8 @@ void lc_row_conclude(lc_row *row, const lc_look *look, double alpha_pass);
 double lc_row_hardness(const lc_pyramid *p, double scale);
 /* Hands the images of a row that failed to whoever asked for them, one row at a time. */
 void lc_row_show(const lc_session *session, lc_row *row, lc_exhibit evidence);
+/* The command line that gives the row of this claim again. */
+void lc_row_reproduce(lc_row *row, const lc_verify_options *options, const lc_claim *claim);
 /* Bad samples, of a film, in words. */
 void lc_row_bad(lc_row *row, const lc_film *film, uint64_t seed);
 

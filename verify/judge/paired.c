@@ -45,8 +45,8 @@ static double noise_of(const lc_film *film, const lc_film *difference)
     return most;
 }
 
-/* 1 when the root mean square of the differences is below the tolerance in each pixel, and there is light at all. */
-static int all_agree(const lc_film *film, const lc_film *difference, double tolerance)
+/* The light, if the root mean square of the differences is below the tolerance in each pixel; else 0. */
+static double light_of_agreement(const lc_film *film, const lc_film *difference, double tolerance)
 {
     size_t count = (size_t)film->width * (size_t)film->height;
     double light = 0;
@@ -60,7 +60,7 @@ static int all_agree(const lc_film *film, const lc_film *difference, double tole
                 return 0;
         }
     }
-    return light > 0;
+    return light;
 }
 
 static lc_status judge_look(lc_look *out, const lc_film *film, const lc_film *difference, const double *zero,
@@ -68,6 +68,7 @@ static lc_status judge_look(lc_look *out, const lc_film *film, const lc_film *di
 {
     double most = -1;
     out->verdict = LC_PASS;
+    out->share = 1;
     for (int c = 0; c < 3; ++c) {
         lc_pyramid pyramid;
         terms_mean terms = mean_of_terms(film, difference, c);
@@ -88,6 +89,7 @@ static lc_status judge_look(lc_look *out, const lc_film *film, const lc_film *di
             out->hardest = pyramid;
             out->channel = c;
             out->scale = unit;
+            out->is_dark = 0;
         }
     }
     return LC_OK;
@@ -110,11 +112,10 @@ static int is_settled(lc_row *row, const lc_film *film, const lc_film *differenc
         lc_row_bad(row, film->bad ? film : difference, session->options->seed);
         return 1;
     }
-    if (!all_agree(film, difference, claim->tolerance))
-        return 0;
-    row->exact = 1;
-    row->verdict = LC_ROW_PASS;
-    return 1;
+    double light = light_of_agreement(film, difference, claim->tolerance);
+    if (light > 0)
+        lc_row_settle(row, session, 1, light);
+    return light > 0;
 }
 
 static lc_status judge(lc_row *row, lc_session *session, const lc_claim *claim, lc_estimate *field, const double *zero,

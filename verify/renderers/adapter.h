@@ -12,6 +12,8 @@
 
 #include "verify/renderers/program.h"
 
+enum { LC_ADAPTER_SECONDS = 600 }; /* for one call, unless somebody says otherwise */
+
 typedef struct lc_adapter {
     char path[LC_PROGRAM_PATH]; /* absolute */
     char name[64];              /* its own, else the file's stem */

@@ -30,7 +30,7 @@ static json_t *row_json(const lc_row *row)
         json_object_set_new(o, "margin", lc_json_number(row->margin));
         json_object_set_new(o, "expected_mean", lc_json_number(row->expected));
     }
-    if (row->verdict == LC_ROW_PASS && !row->exact)
+    if (row->verdict == LC_ROW_PASS && (!row->exact || row->missed > 0))
         json_object_set_new(o, "excluded_missed_contribution", lc_json_number(row->missed));
     if (row->verdict != LC_ROW_PASS)
         json_object_set_new(o, "reason", lc_json_text(row->reason));

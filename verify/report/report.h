@@ -9,7 +9,7 @@
 
 #include "core/host.h"
 
-enum { LC_MOST_PATH = 1024 };
+enum { LC_MOST_PATH = 1024, LC_MOST_COMMAND = 20 * 1024 }; /* the latter: a path of 4096 bytes in quotes, and options */
 
 typedef enum lc_row_verdict { LC_ROW_PASS, LC_ROW_FAIL, LC_ROW_UNDECIDED } lc_row_verdict;
 
@@ -32,9 +32,10 @@ typedef struct lc_row {
     double tile_ratio;                           /* there: mean / expected mean of the tile; NaN where that is 0 */
     double tile_log10_p;                         /* of it, corrected for all tiles and levels */
     double
-        missed; /* PASS: the largest contribution that could have been missed, in units of the mean of a sample; else 0 */
+        missed; /* PASS: the largest contribution that could have been missed, in units of the mean of a sample; else 0, as in rows about
+                   the host, and about black, of which no contribution has a size */
     char reason[512];    /* in words, for FAIL and UNDECIDED */
-    char reproduce[640]; /* a command line */
+    char reproduce[LC_MOST_COMMAND]; /* a command line, each word quoted for a shell */
     char pictures[LC_MOST_PATH]; /* FAIL: how the names of its pictures begin, with their folder (pictures.h); empty: none */
 } lc_row;
 

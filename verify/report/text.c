@@ -28,11 +28,11 @@ static void format_count(char *text, size_t size, uint64_t count)
 static void format_unseen(char *text, size_t size, const lc_row *row)
 {
     text[0] = 0;
-    if (row->verdict == LC_ROW_PASS && !row->exact && row->missed >= 1e15)
+    if (row->verdict == LC_ROW_PASS && row->missed >= 1e15)
         snprintf(text, size, "%.1e", row->missed);
-    else if (row->verdict == LC_ROW_PASS && !row->exact && row->missed >= 100)
+    else if (row->verdict == LC_ROW_PASS && row->missed >= 100)
         format_count(text, size, (uint64_t)(row->missed + 0.5));
-    else if (row->verdict == LC_ROW_PASS && !row->exact && row->missed > 0)
+    else if (row->verdict == LC_ROW_PASS && row->missed > 0)
         snprintf(text, size, "%.2g", row->missed);
 }
 
@@ -58,12 +58,21 @@ void lc_report_text_row(FILE *out, const lc_row *row)
             lc_row_verdict_name(row->verdict), estimate, interval, margin, paths, unseen);
 }
 
+static void print_tile(FILE *out, const lc_row *row)
+{
+    fprintf(out, "    worst tile: %dx%d pixels at %d,%d: ", row->tile_width, row->tile_height, row->tile_x, row->tile_y);
+    if (isfinite(row->tile_ratio))
+        fprintf(out, "%.4g times what is expected there", row->tile_ratio);
+    else
+        fprintf(out, "light where none is expected");
+    fprintf(out, ", p = 1e%.0f\n", row->tile_log10_p);
+}
+
 static void print_trouble(FILE *out, const lc_row *row)
 {
     fprintf(out, "    %s\n    expected: %s\n", row->reason, row->source);
     if (row->tile_width && !row->exact)
-        fprintf(out, "    worst tile: %dx%d pixels at %d,%d: %.4g times what is expected there, p = 1e%.0f\n",
-                row->tile_width, row->tile_height, row->tile_x, row->tile_y, row->tile_ratio, row->tile_log10_p);
+        print_tile(out, row);
     if (row->pictures[0])
         fprintf(out, "    pictures: %s.difference.png (red: too much, blue: too little), .is, .expected, .difference, each .exr and .png\n",
                 row->pictures);
@@ -109,7 +118,7 @@ void lc_report_text(FILE *out, const lc_report *report)
     fprintf(out, "\nestimate: mean of reflected light / what is expected, in the hardest of three channels; PASS: "
                  "shown within 1 +- margin.\n"
                  "unseen: light of the margin's size that no sample met can only come in samples worth more than this many "
-                 "times the mean.\n");
+                 "times the mean (of an exact row: light of the size of the run's margin).\n");
     fprintf(out, "%s", report->budget);
     fprintf(out,
             "%d rows: %d PASS, %d FAIL, %d UNDECIDED; ",

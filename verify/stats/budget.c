@@ -33,7 +33,9 @@ int lc_budget_text(char *text, size_t size, const lc_budget *b, int width, int h
     int levels = lc_pyramid_levels(width, height);
     int length = snprintf(text, size,
                           "false FAIL %.3g a run = %d rows x %d channels x %d looks x %.3g, each over %d levels\n"
-                          "false PASS %.3g a run = %d rows x %d looks x %.3g, one-sided z %.2f\n",
+                          "false PASS %.3g a run = %d rows x %d looks x %.3g, one-sided z %.2f\n"
+                          "exact rows are outside of it: that all samples agree shows nothing of those not drawn; what it excludes is "
+                          "under `unseen`\n",
                           b->fail, b->rows, b->channels, b->looks, fail, levels, b->pass, b->rows, b->looks, pass,
                           lc_normal_quantile(pass));
     for (int l = 0; l < levels; ++l) {

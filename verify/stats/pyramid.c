@@ -40,7 +40,6 @@ void lc_pyramid_plan_init(lc_pyramid_plan *plan, double alpha_fail, double alpha
     for (int l = 0; l < LC_LEVELS; ++l) {
         plan->margin[l] = INFINITY;
         plan->least[l] = LC_LEAST_SAMPLES;
-        plan->inflation[l] = 1;
     }
 }
 
@@ -82,9 +81,6 @@ static lc_status check_plan(const lc_pyramid_plan *plan, int levels, lc_error *e
     if (!(plan->relative >= 0 && plan->relative < INFINITY))
         return lc_fail(err, LC_BAD_INPUT, "relative margin %g, expected a number >= 0", plan->relative);
     for (int l = 0; l < levels; ++l)
-        if (!(plan->inflation[l] >= 1 && plan->inflation[l] < INFINITY))
-            return lc_fail(err, LC_BAD_INPUT, "inflation %g of level %d, expected a number from 1 on", plan->inflation[l], l);
-    for (int l = 0; l < levels; ++l)
         if (!(plan->margin[l] > 0))
             return lc_fail(err, LC_BAD_INPUT, "margin %g of level %d, expected a number above 0", plan->margin[l], l);
     return LC_OK;
@@ -120,16 +116,6 @@ static void guard(const visit_state *state, int l, double pixels, lc_student *st
             if (a == top || around->events[side] < ENOUGH_EVENTS * parts)
                 student->skew[side] = fmax(student->skew[side], around->skew[side] * sqrt(parts));
     }
-}
-
-/* Pixels that move together have no more degrees of freedom than there are images. */
-static void inflate(lc_student *student, double inflation, double images)
-{
-    if (!(inflation > 1))
-        return;
-    student->error *= sqrt(inflation);
-    if (inflation > 1.25)
-        student->df = fmin(student->df, images - 1);
 }
 
 static int side_of(const lc_student *s) { return s->difference < 0 ? LC_LOW : LC_HIGH; }
@@ -206,7 +192,6 @@ static void judge_tile(visit_state *state, int l, int x, int y, const lc_estimat
     int size = 1 << l, right = x + size < state->width ? x + size : state->width;
     int bottom = y + size < state->height ? y + size : state->height;
     lc_tile tile = {l, x, y, right - x, bottom - y, lc_estimate_student(sum), NAN};
-    inflate(&tile.student, state->plan->inflation[l], sum->arm[0].least);
     known->around = tile.student;
     known->pixels = sum->pixels;
     guard(state, l, sum->pixels, &tile.student);

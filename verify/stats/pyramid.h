@@ -72,8 +72,6 @@ typedef struct lc_pyramid_plan {
     double relative; /* the margins are this multiple of arm b's measured mean, whose noise then enters PASS: a - (1 +- m)
                         b has the variance of a and (1 + m)^2 that of b; 0: they are constants */
     uint64_t least[LC_LEVELS];     /* samples a pixel from which on the level takes part */
-    double inflation[LC_LEVELS];   /* >= 1: the variance of a tile's mean over the sum of its pixels', which are independent
-                                      in films of ours (1), but perhaps not in images by other programs */
     lc_guard guard;
 } lc_pyramid_plan;
 

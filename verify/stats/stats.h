@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  *
  * stats.h: the statistics of the judge: pure functions, no I/O, no globals; any thread. This header gives all of them:
- * tails.h (distributions), estimate.h (one difference), pyramid.h (an image, the budget, the looks), and the tests
- * below.
+ * tails.h (distributions), estimate.h (one difference), pyramid.h (an image, the budget, the looks), tiles.h (images whose
+ * pixels move together), and the tests below.
  *
  * The judge's loop for one row, against an expected image (lc_field_two() for another film):
  *
@@ -32,6 +32,7 @@
 #include "verify/stats/estimate.h"
 #include "verify/stats/pyramid.h"
 #include "verify/stats/tails.h"
+#include "verify/stats/tiles.h"
 
 /* ---- bounds ------------------------------------------------------------------------------------------------ */
 

@@ -6,7 +6,7 @@
 set -eu
 cd "$(dirname "$0")/../.."
 what=judge
-judge='judge_mutants stats_estimate stats_pyramid stats film' shown='pictures/core exr/films verify/words'
+judge='judge_mutants stats_estimate stats_pyramid stats_tiles stats film' shown='pictures/core exr/films verify/words'
 suites="$judge $shown"
 . verify/tests/wrong_copy.sh
 suites=$judge
@@ -50,6 +50,15 @@ mutant levels_not_paid_for $pyramid 's|plan->alpha_fail / out->levels / tiles|pl
 mutant one_side_not_paid_for $pyramid 's/log(2 \* tiles \* out->levels)/log(tiles * out->levels)/'
 mutant tolerance_ignored $pyramid 's/double bound = side == LC_LOW ? -s->tolerance : s->tolerance,/double bound = 0,/'
 
+# Images whose pixels move together.
+tiles=verify/stats/tiles.c
+mutant spread_of_tiles_ignored $tiles 's/arm->variance = fmax(arm->variance, own->variance);//' stats_tiles
+mutant degrees_of_the_pixels $tiles 's/arm->variance2 = fmax(.*;//' stats_tiles
+mutant third_moment_of_the_pixels $tiles 's/arm->third = own->third;/(void)channel;/' stats_tiles
+mutant third_moment_always_the_images $tiles 's/if (is_together(arm, own, n) && /if (/' stats_tiles
+mutant one_level_fails_at_the_budget_of_all $tiles 's|plan->alpha_fail \* (levels - level) / levels|plan->alpha_fail|' stats_tiles
+mutant images_taken_as_independent verify/judge/foreign.c 's/r->skip, f->tiles, row->margin/r->skip, NULL, row->margin/' adapter/images
+
 # The budget.
 mutant looks_not_paid_for $budget 's|b->fail / ((double)b->rows \* b->channels \* b->looks)|b->fail / ((double)b->rows * b->channels)|'
 mutant one_look_paid_for $claim 's/session->rows, 3, LC_MOST_LOOKS};/session->rows, 3, 1};/'
@@ -75,6 +84,20 @@ mutant dependence_shown_by_anything verify/stats/variance.c 's/b->log_p <= 2 \* 
 mutant same_stream_twice $estimate 's/if (x.seed == y.seed \&\& /if (0 \&\& /'
 mutant first_stream_only $estimate 's/j <= b->more_count/j <= 0/'
 mutant third_moment_not_merged src/core/film.c 's/m->m3 += o->m3 + square/m->m3 += square/'
+
+# Images from files.
+mutant rounding_of_files_ignored $claim 's/if (what->is_from_files)/if (0)/' verify/words
+mutant rounding_once_for_all_merges $claim 's/return (1 + film->more_count) \* /return /' verify/words
+
+# The line that gives a row again.
+mutant margin_not_said verify/judge/reproduce.c 's/if (o->margin > 0)/if (0)/' verify/words
+mutant file_not_quoted verify/judge/reproduce.c 's/lc_shell_word(word, whole)/whole/; s/char word.*, whole/char whole/' verify/words
+
+# What a PASS excludes.
+mutant missed_by_samples_of_a_pixel $claim 's/look->share \* (double)row->paths/look->share * (double)row->samples/'
+mutant missed_counts_what_is_skipped $claim 's/look->share \* (double)row->paths/(double)row->paths/'
+mutant exact_row_excludes_everything $claim 's/row->missed = light > 0 ? .*;/row->missed = 0;/'
+mutant exact_row_counts_what_is_skipped $claim 's/share \* (double)row->paths, 1e-6/(double)row->paths, 1e-6/'
 
 # What a FAIL looks like, why a row stays undecided, and what of a film is kept in a file.
 suites=$shown

@@ -50,6 +50,7 @@ static const struct {
     {"film", lc_suite_film},
     {"motion", lc_suite_motion},
     {"stats_pyramid", lc_suite_stats_pyramid},
+    {"stats_tiles", lc_suite_stats_tiles},
     {"analytic_direct", lc_suite_analytic_direct},
     {"analytic", lc_suite_analytic},
     {"assignment", lc_suite_assignment},

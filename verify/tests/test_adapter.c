@@ -210,6 +210,42 @@ START_TEST(right_adapters_pass_and_wrong_ones_fail)
 }
 END_TEST
 
+/* Each image is right but for a factor of its own, whose mean is 1: one of eight, within 1.5%, by a hash of the seed. So a pixel shows a
+ * noise of 1% that the number of pixels does not reduce. */
+#define FACTORS \
+    "[ \"$1\" = --describe ] && { echo max_bounces=1; echo batch=64; exit; }\n" \
+    "xml=$1 size=$2x$3 seed=$5 out=$7\nshift 7\nwhile :; do\n" \
+    "h=$(( (seed ^ seed >> 16) * 0x45d9f3b & 0xffffffff )) h=$(( (h ^ h >> 16) * 0x45d9f3b & 0xffffffff )) k=$(( (h ^ h >> 16) % 8 ))\n" \
+    "if ! [ -e \"$0.$k.exr\" ]; then\n" \
+    "f=$(awk \"BEGIN { f = 1 + 0.015 * (2 * $k - 7) / 7; print 2 * f, 3 * f, 4 * f }\")\n" \
+    "sed \"s/\\(name=.irradiance. value=.\\)[^\\\"]*/\\1$f/\" \"$xml\" >\"$0.$k.xml\"\n" \
+    "\"$LIGHTCHECK\" render \"$0.$k.xml\" -e light_direct --bounces 1 --size \"$size\" -s 1 -o \"$0.$k.exr\" >&2 || exit 1\n" \
+    "fi\ncp \"$0.$k.exr\" \"$out\"\n[ $# -gt 0 ] || break\nseed=$1 out=$2\nshift 2\ndone"
+
+START_TEST(images_that_move_as_one_do_not_fail)
+{
+    char command[sizeof script + 32];
+    lc_adapter a;
+    lc_verify_options options;
+    lc_report report;
+    make_script(FACTORS);
+    ck_assert_msg(lc_adapter_open(&a, script, 60, &err) == LC_OK, "%s", err.text);
+    lc_verify_options_init(&options);
+    options.renderer = &a;
+    options.estimator = &a.estimator;
+    options.check = "analytic";
+    options.scene = "plane_directional";
+    ck_assert_msg(lc_verify(&report, &options, lc_scene_open, &err) == LC_OK, "%s", err.text);
+    ck_assert_int_eq(report.count, 1);
+    ck_assert_msg(report.rows[0].verdict == LC_ROW_PASS && !report.rows[0].exact, "%s", report.rows[0].reason);
+    ck_assert_double_ge(report.rows[0].high - report.rows[0].low, 0.002);
+    lc_report_release(&report);
+    snprintf(command, sizeof command, "rm %s.*", script);
+    ck_assert_int_eq(system(command), 0);
+    remove_script();
+}
+END_TEST
+
 START_TEST(what_is_refused_is_noted)
 {
     lc_adapter a;
@@ -328,6 +364,10 @@ Suite *lc_suite_adapter(void)
     tcase_add_test(tc, what_is_refused_is_noted);
     tcase_add_test(tc, a_crash_loses_one_row);
     tcase_add_test(tc, the_example_renders_what_it_says);
+    suite_add_tcase(suite, tc);
+    tc = tcase_create("images");
+    tcase_set_timeout(tc, 60);
+    tcase_add_test(tc, images_that_move_as_one_do_not_fail);
     suite_add_tcase(suite, tc);
     return suite;
 }

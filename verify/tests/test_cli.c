@@ -485,6 +485,66 @@ START_TEST(compare_has_three_answers)
 }
 END_TEST
 
+/* Hardly any noise, and 1 but for so many steps of a float. */
+static void write_still(const char *path, uint64_t seed, int steps, int more)
+{
+    lc_film *film;
+    ck_assert_int_eq(lc_film_create(&film, 8, 8, NULL), LC_OK);
+    film->has_third = 1;
+    film->seed = seed;
+    film->count = 4096;
+    for (int i = 0; i < 64; ++i) {
+        film->pixels[i].n = 4096;
+        for (int c = 0; c < 3; ++c) {
+            film->pixels[i].c[c].mean = 1 + steps * ldexp(1, -23);
+            film->pixels[i].c[c].m2 = 1e-18;
+        }
+    }
+    film->more = more ? &(lc_range){seed + 100, 0, 0, 4096} : NULL;
+    film->more_count = more;
+    ck_assert_int_eq(lc_exr_write(path, film, NULL), LC_OK);
+    film->more = NULL;
+    film->more_count = 0;
+    lc_film_free(film);
+}
+
+/* A file keeps means as floats: what they are rounded by is no difference, once for each time that they were. */
+START_TEST(compare_knows_that_files_are_rounded)
+{
+    const char *a = in_folder("a.exr"), *b = in_folder("b.exr");
+    write_still(a, 1, 0, 0);
+    write_still(b, 2, 1, 0);
+    run(OK, "compare", a, b);
+    write_still(b, 2, 2, 0);
+    run(WRONG, "compare", a, b);
+    write_still(a, 1, 0, 1);
+    write_still(b, 2, 2, 1);
+    run(OK, "compare", a, b);
+}
+END_TEST
+
+/* A negative mean is none of good samples, in whichever image: it is named, and nothing is compared. */
+START_TEST(compare_names_a_bad_pixel)
+{
+    static const struct {
+        double value;
+        const char *words;
+    } bad[] = {{-0.5, "bad.exr: pixel 3,2 has G = -0.5, expected"}, {NAN, "bad.exr: pixel 3,2 has G = "}};
+    const char *good = in_folder("a.exr"), *path = in_folder("bad.exr");
+    lc_film *film;
+    write_still(good, 1, 0, 0);
+    for (int i = 0; i < 2; ++i) {
+        write_still(path, 2, 0, 0);
+        ck_assert_int_eq(lc_exr_read(&film, path, NULL), LC_OK);
+        film->pixels[2 * 8 + 3].c[1].mean = bad[i].value;
+        ck_assert_int_eq(lc_exr_write(path, film, NULL), LC_OK);
+        lc_film_free(film);
+        run_bad(WRONG, bad[i].words, "compare", good, path);
+        run_bad(WRONG, bad[i].words, "compare", path, good);
+    }
+}
+END_TEST
+
 /* Third moments travel in the file: different counts are decided, and the sum of small renders is. Without them nothing is. */
 START_TEST(compare_knows_the_tails)
 {
@@ -671,12 +731,18 @@ Suite *lc_suite_cli(void)
     tcase_add_test(tc, a_full_or_closed_stdout_is_4);
     tcase_add_test(tc, renders_to_exr_and_png);
     tcase_add_test(tc, threads_and_shards_change_no_byte);
-    tcase_add_test(tc, compare_has_three_answers);
-    tcase_add_test(tc, compare_knows_the_tails);
     tcase_add_test(tc, sample_repeats_what_render_saw);
     tcase_add_test(tc, verify_says_pass_or_fail);
     tcase_add_test(tc, verify_has_formats);
     tcase_add_test(tc, verify_draws_what_fails);
+    suite_add_tcase(suite, tc);
+    tc = tcase_create("compare");
+    tcase_set_timeout(tc, 120);
+    tcase_add_checked_fixture(tc, make_folder, clean_folder);
+    tcase_add_test(tc, compare_has_three_answers);
+    tcase_add_test(tc, compare_knows_that_files_are_rounded);
+    tcase_add_test(tc, compare_names_a_bad_pixel);
+    tcase_add_test(tc, compare_knows_the_tails);
     suite_add_tcase(suite, tc);
     tc = tcase_create("signals");
     tcase_set_timeout(tc, 120);

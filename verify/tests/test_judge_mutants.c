@@ -80,6 +80,14 @@ static lc_rgb rarely(const lc_scene *scene, const lc_ray *ray, const lc_hit *hit
     return lc_rgb_scale(1 - take + (u < share ? take / share : 0), uniform_right(scene, ray, hit, options, sampler));
 }
 
+/* Without variance, unless one meets what it adds once in ten million samples: 1% of its mean. */
+static lc_rgb still(const lc_scene *scene, const lc_ray *ray, const lc_hit *hit, const lc_options *options, lc_sampler *sampler)
+{
+    (void)scene, (void)ray, (void)hit, (void)options;
+    double value = lc_next(sampler) < 1e-7 ? 1 + 0.01 / 1e-7 : 1;
+    return lc_color(value, value, value);
+}
+
 static lc_estimator estimator_of(const char *name, lc_radiance_fn *radiance)
 {
     lc_estimator e = {LC_ABI, name, "", "", LC_DIFFUSE, LC_AREA, 1, radiance};
@@ -94,6 +102,14 @@ static lc_status expect(lc_expected *out, const lc_claim *claim, const lc_scene 
     for (int i = 0; i < 3 * out->width * out->height; ++i)
         out->rgb[i] = 1;
     return LC_OK;
+}
+
+/* In the right half; the rest is left out. */
+static lc_status expect_half(lc_expected *out, const lc_claim *claim, const lc_scene *scene, int threads, lc_error *err)
+{
+    for (int i = 0; i < out->width * out->height; ++i)
+        out->skip[i] = i % out->width < out->width / 2;
+    return expect(out, claim, scene, threads, err);
 }
 
 typedef struct setup {
@@ -269,6 +285,75 @@ START_TEST(the_last_look_is_taken)
 }
 END_TEST
 
+/* An exact row meets no more of what is rare than any other, and says what it excludes: of all paths to pixels that count. */
+START_TEST(an_exact_pass_says_what_it_excludes)
+{
+    const setup s = {16, 8, MARGIN, 0, 1e-6, 1e-6};
+    lc_estimator e = estimator_of("still", still), other = estimator_of("other", still);
+    lc_scene *scene = build_scene(16, 8);
+    const struct {
+        lc_claim claim;
+        double paths;
+    } cases[] = {
+        {{.may_be_still = 1, .expect = expect}, 128 * LC_LEAST_SAMPLES},
+        {{.may_be_still = 1, .expect = expect_half}, 64 * LC_LEAST_SAMPLES},
+        {{.exact = 1, .expect = expect}, 128 * LC_BLOCK},
+        {{.exact = 1, .other = &other}, 128 * LC_BLOCK},
+        {{.paired = 1, .term = {{scene, 1, 0}}, .term_count = 1, .relation = "same"}, 128 * LC_BLOCK},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
+        lc_claim claim = cases[i].claim;
+        claim.scene = scene;
+        claim.estimator = &e;
+        lc_row row = judge_with(&s, claim, 1);
+        ck_assert_msg(row.verdict == LC_ROW_PASS && row.exact, "%zu: %s", i, row.reason);
+        ck_assert_double_eq_tol(row.missed, MARGIN * cases[i].paths / log(1e6), 1e-9 * row.missed);
+    }
+    lc_scene_free(scene);
+}
+END_TEST
+
+/* So does any other: of its own margin, and of all paths to pixels that count. */
+START_TEST(a_pass_says_what_it_excludes)
+{
+    const setup s = {16, 8, MARGIN, 0, 1e-6, 1e-6};
+    lc_estimator right = estimator_of("right", uniform_right), again = estimator_of("again", uniform_right);
+    lc_scene *scene = build_scene(16, 8);
+    for (int i = 0; i < 3; ++i) {
+        lc_claim claim = {.scene = scene, .estimator = &right, .expect = i == 0 ? expect : expect_half, .other = i == 2 ? &again : NULL};
+        lc_row row = judge_with(&s, claim, 1);
+        double pixels = i == 1 ? 64 : 128;
+        ck_assert_msg(row.verdict == LC_ROW_PASS && !row.exact, "%s", row.reason);
+        ck_assert_double_eq_tol(row.missed, row.margin * pixels * (double)row.samples / log(1e6), 1e-9 * row.missed);
+    }
+    lc_scene_free(scene);
+}
+END_TEST
+
+static lc_status expect_black(lc_expected *out, const lc_claim *claim, const lc_scene *scene, int threads, lc_error *err)
+{
+    (void)out, (void)claim, (void)scene, (void)threads, (void)err;
+    return LC_OK;
+}
+
+/* No percentage of nothing: of light where none is expected the mean is told. */
+START_TEST(light_where_none_is_expected_is_said)
+{
+    const setup s = {16, 8, MARGIN, 0, 1e-6, 1e-6};
+    lc_estimator noisy = estimator_of("noisy", uniform_right), calm = estimator_of("calm", still);
+    lc_scene *scene = build_scene(16, 8);
+    for (int exact = 0; exact < 2; ++exact) {
+        lc_claim claim = {.scene = scene, .estimator = exact ? &calm : &noisy, .expect = expect_black, .exact = exact};
+        lc_row row = judge_with(&s, claim, 1);
+        ck_assert_int_eq(row.verdict, LC_ROW_FAIL);
+        ck_assert_ptr_nonnull(strstr(row.reason, exact ? "pixel 0,0 has R = 1, expected exactly 0"
+                                                       : "is wrong: there is light where none is expected, a mean of 1 ("));
+        ck_assert_msg(!strchr(row.reason, '%') && !strstr(row.reason, "inf"), "%s", row.reason);
+    }
+    lc_scene_free(scene);
+}
+END_TEST
+
 /* ---- error rates ------------------------------------------------------------------------------------------------ */
 
 /* All looks and channels together keep within a budget that a single one would fill, make use of it, and no row FAILs
@@ -414,6 +499,9 @@ Suite *lc_suite_judge_mutants(void)
     tcase_add_test(cases, independent_samples_do_not_depend);
     tcase_add_test(cases, undecided_is_not_a_pass);
     tcase_add_test(cases, the_last_look_is_taken);
+    tcase_add_test(cases, an_exact_pass_says_what_it_excludes);
+    tcase_add_test(cases, a_pass_says_what_it_excludes);
+    tcase_add_test(cases, light_where_none_is_expected_is_said);
     tcase_add_test(cases, every_look_is_paid_for);
     tcase_add_test(cases, every_pass_is_paid_for);
     tcase_add_test(cases, gaussian_tails_are_students);

@@ -100,6 +100,28 @@ START_TEST(test_plugin_verify)
 }
 END_TEST
 
+/* The line below a row that failed gives the same row, and the one of a bad sample that very sample, whatever the options and the path. */
+START_TEST(test_plugin_again)
+{
+    const char *run_again = "sed -n 's|^ *again: build/lightcheck|L|p' first > again.sh && . ./again.sh > second; "
+                            "grep -E ' FAIL  |again:' first > a; grep -E ' FAIL  |again:' second > b; diff a b && grep -c ' FAIL  ' a";
+    expect("mkdir \"it's a\" && sed 's/count \\* cos_surface/1.02 * count * cos_surface/' $S/light_direct.c > \"it's a/two.c\"", 0, "");
+    expect("L verify -e \"it's a/two.c\" -c analytic --scene plane_disk --margin 0.0125 --budget 0.001 --seed 7 > first", 1, "");
+    expect("grep again: first", 0,
+           "again: build/lightcheck verify --suite quick -c analytic -e 'it'\\''s a/two.c' --scene plane_disk --seed 7 --margin 0.0125 "
+           "--budget 0.001\n");
+    expect(run_again, 0, "1\n");
+    expect("sed 's/^    lc_rgb sum = lc_black();/    if (options->min_bounces == 1) return lc_color(-1 - lc_next(sampler), 0, 0);\\n&/' "
+           "$S/light_direct.c > \"it's a/less.c\" && grep -c lc_color \"it's a/less.c\"", 0, "1\n");
+    expect("L render cornell -e \"it's a/less.c\" -s 1 --size 8x8 --min-bounces 1 --bounces 1 -o x.exr > first", 1,
+           "see it with `lightcheck sample cornell -e 'it'\\''s a/less.c' --pixel 0,0 --index 0 --seed 1 --bounces 1 --min-bounces 1 "
+           "--size 8x8`");
+    expect("L render cornell -e \"it's a/less.c\" -s 1 --size 8x8 --min-bounces 1 -o x.exr 2>&1 | "
+           "sed -n 's/.*first (\\(-[0-9.]\\{5\\}\\)[^`]*`lightcheck\\([^`]*\\)`.*/\\1\\nL\\2/p' > line; "
+           "sed 1d line > again.sh; . ./again.sh | grep -c \"radiance ($(head -n 1 line)\"", 0, "1\n");
+}
+END_TEST
+
 START_TEST(test_plugin_errors)
 {
     expect("L new mine && printf 'int x = y;\\n' >> mine.c; L render cornell -e mine.c", 2, "mine.c:32:9: error:");
@@ -175,6 +197,7 @@ Suite *lc_suite_plugin(void)
     tcase_add_checked_fixture(tcase, set_up, tear_down);
     tcase_add_test(tcase, test_plugin_same_bits);
     tcase_add_test(tcase, test_plugin_verify);
+    tcase_add_test(tcase, test_plugin_again);
     tcase_add_test(tcase, test_plugin_errors);
     tcase_add_test(tcase, test_plugin_new);
     tcase_add_test(tcase, test_plugin_exports);

@@ -100,6 +100,47 @@ static lc_rgb two_percent_more(const lc_scene *scene, const lc_ray *ray, const l
     return lc_rgb_scale(1.02, find("light_direct")->radiance(scene, ray, hit, options, sampler));
 }
 
+/* All that bears on the verdict, and nothing that is as usual; no path is too long. */
+START_TEST(a_row_names_its_command)
+{
+    char given[4000], line[8192];
+    lc_verify_options o;
+    lc_scene *scene;
+    lc_adapter adapter = {.seconds = LC_ADAPTER_SECONDS, .path = "/opt/a b/x.sh"};
+    lc_claim claim = {.check = lc_checks[0], .estimator = find("path")};
+    static lc_row row;
+    ck_assert_int_eq(load_small(&scene, "plane_disk", NULL), LC_OK);
+    claim.scene = scene;
+    memset(given, '\'', sizeof given - 1);
+    given[sizeof given - 1] = 0;
+    lc_verify_options_init(&o);
+    lc_row_reproduce(&row, &o, &claim);
+    snprintf(line, sizeof line, "build/lightcheck verify --suite quick -c %s -e path --scene plane_disk --seed 1", lc_checks[0]->name);
+    ck_assert_str_eq(row.reproduce, line);
+
+    o.estimator = claim.estimator;
+    o.given = given;
+    o.is_jailed = 1;
+    o.margin = 0.1;
+    o.false_fail = o.false_pass = 2.5e-4;
+    lc_row_reproduce(&row, &o, &claim);
+    const char *end = " --jail --scene plane_disk --seed 1 --margin 0.1 --budget 0.00025";
+    ck_assert_uint_gt(strlen(row.reproduce), 4 * (sizeof given - 1));
+    ck_assert_str_eq(row.reproduce + strlen(row.reproduce) - strlen(end), end);
+
+    for (int slow = 0; slow < 2; ++slow) {
+        lc_verify_options_init(&o);
+        o.renderer = &adapter;
+        o.estimator = claim.estimator = &adapter.estimator;
+        adapter.seconds = slow ? 1200 : LC_ADAPTER_SECONDS;
+            lc_row_reproduce(&row, &o, &claim);
+        ck_assert_ptr_nonnull(strstr(row.reproduce, slow ? " --renderer '/opt/a b/x.sh' --seconds 1200 --scene plane_disk --seed 1"
+                                                         : " --renderer '/opt/a b/x.sh' --scene plane_disk --seed 1"));
+    }
+    lc_scene_free(scene);
+}
+END_TEST
+
 static lc_rgb black(const lc_scene *scene, const lc_ray *ray, const lc_hit *hit, const lc_options *options,
                     lc_sampler *sampler)
 {
@@ -474,6 +515,36 @@ static lc_film *flat_film(uint32_t arm, double mean, double deviation, double sk
     return film;
 }
 
+/* Two floats next to each other may be one mean; one that was merged was rounded twice. Films that were rendered are not rounded. */
+START_TEST(what_files_round_is_no_difference)
+{
+    static const struct {
+        int steps, merges, is_from_files;
+        lc_row_verdict verdict;
+    } cases[] = {{0, 0, 0, LC_ROW_PASS}, {1, 0, 0, LC_ROW_FAIL}, {1, 0, 1, LC_ROW_PASS},
+                 {2, 0, 1, LC_ROW_FAIL}, {2, 1, 1, LC_ROW_PASS}, {3, 1, 1, LC_ROW_FAIL}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
+        lc_range more[2] = {{1, 3, 0, 1}, {1, 4, 0, 1}};
+        lc_film *film[2] = {flat_film(1, 1, 1e-10, 0), flat_film(2, 1 + cases[i].steps * ldexp(1, -23), 1e-10, 0)};
+        lc_row row = {.check = ""};
+        lc_error err;
+        for (int k = 0; k < 2 && cases[i].merges; ++k) {
+            film[k]->more = &more[k];
+            film[k]->more_count = 1;
+        }
+        lc_status status = cases[i].is_from_files ? lc_compare_files(&row, film[0], film[1], 0.005, 1e-6, 1e-6, &err)
+                                                  : lc_compare_films(&row, film[0], film[1], 0.005, 1e-6, 1e-6, &err);
+        ck_assert_msg(status == LC_OK, "%s", err.text);
+        ck_assert_msg(row.verdict == cases[i].verdict, "%zu: %s", i, row.reason);
+        for (int k = 0; k < 2; ++k) {
+            film[k]->more = NULL;
+            film[k]->more_count = 0;
+            lc_film_free(film[k]);
+        }
+    }
+}
+END_TEST
+
 /* Why a row stays undecided. Where one end of the interval alone lies open, the guard is the reason and no width: rare bright samples
  * of the first film spoil the upper end whichever way the means lie, but the test against FAIL only when it lies below. */
 START_TEST(the_reason_is_the_right_one)
@@ -524,6 +595,8 @@ Suite *lc_suite_verify(void)
     tcase_add_test(tc, cells_name_what_there_is);
     suite_add_tcase(suite, tc);
     tc = tcase_create("words");
+    tcase_add_test(tc, a_row_names_its_command);
+    tcase_add_test(tc, what_files_round_is_no_difference);
     tcase_add_test(tc, the_reason_is_the_right_one);
     suite_add_tcase(suite, tc);
     return suite;

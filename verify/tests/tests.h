@@ -24,6 +24,7 @@ Suite *lc_suite_png(void);
 Suite *lc_suite_stats(void);
 Suite *lc_suite_stats_estimate(void);
 Suite *lc_suite_stats_pyramid(void);
+Suite *lc_suite_stats_tiles(void);
 Suite *lc_suite_analytic_direct(void);
 Suite *lc_suite_sampler(void);
 Suite *lc_suite_warp(void);
