@@ -70,7 +70,7 @@ static lc_arm_sums arm_of_pixel(const lc_pixel *pixel, int has_third, int channe
     double scale = 1 / (n * (n - 1) * fmax(n - 2, 1));
     if (has_third && n > 2) {
         int bright = m->m3 > 0;
-        double largest = bright ? m->max - m->mean : m->mean; /* no sample is negative; `max` is 0 in a film from a file */
+        double largest = bright ? m->max - m->mean : fabs(m->mean); /* no sample is negative; `max` is 0 in a film from a file */
         arm.third = m->m3 * scale;
         arm.cubes[bright] = fabs(m->m3);
         arm.sixths[bright] = bright && !(m->max > 0) ? INFINITY : fabs(m->m3) * pow(largest, 3);
