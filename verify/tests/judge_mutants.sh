@@ -38,6 +38,7 @@ mutant skewness_of_the_wrong_side $estimate 's/double third = i == 0 ? arm->thir
 mutant skewness_cancels_between_arms $estimate 's/spoil\[LC_LOW\] += fmax(third, 0)/spoil[LC_LOW] += third/'
 mutant sixteen_samples_are_enough verify/stats/estimate.h 's/LC_LEAST_SAMPLES = 256/LC_LEAST_SAMPLES = 16/'
 
+mutant margin_of_a_relation_is_exact verify/judge/paired.c 's/fmax(0, mean - 8 \* error)/mean + 0 * error/'
 mutant tiles_of_differences verify/judge/paired.c 's/^    lc_plan_whole(&plan/    if (claim->whole_only) lc_plan_whole(\&plan/'
 
 # The pyramid.

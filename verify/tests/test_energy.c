@@ -405,7 +405,7 @@ START_TEST(rows_of_a_run)
         ck_assert_str_eq(report.rows[i].check, "energy");
         ck_assert_str_eq(report.rows[i].scene, lc_energy_name(i));
         ck_assert_str_eq(report.rows[i].estimator, "host");
-        ck_assert_str_eq(report.rows[i].reproduce, "build/lightcheck verify --suite quick -c energy --seed 1");
+        ck_assert_str_eq(report.rows[i].reproduce, "build/lightcheck verify --suite quick -c energy --seed 1 --margin 0.02");
     }
     lc_report_release(&report);
     options.estimator = lc_estimators[0]; /* it is not what the rows are about */
