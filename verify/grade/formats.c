@@ -88,7 +88,18 @@ static char *close_text(FILE *out, char **text)
     return NULL;
 }
 
-char *lc_result_feedback(const lc_test_result *t, int is_public)
+/* A label, a colon and a text, where there is one. */
+static void add_line(FILE *out, const char *label, const char *text)
+{
+    if (!text[0])
+        return;
+    fputc('\n', out);
+    lc_plain(out, label);
+    fputs(": ", out);
+    lc_plain(out, text);
+}
+
+char *lc_result_feedback(const lc_grade_result *r, const lc_test_result *t, int is_public)
 {
     int is_open = !is_public || lc_test_is_open(t);
     char *text = NULL;
@@ -97,13 +108,16 @@ char *lc_result_feedback(const lc_test_result *t, int is_public)
     if (!out)
         return NULL;
     if (t->status == LC_TEST_PENDING) {
-        fputs("Not judged yet.", out);
+        lc_plain(out, r->labels[LC_LABEL_PENDING]);
+        return close_text(out, &text);
+    }
+    lc_plain(out, is_open ? t->sentence : t->shown);
+    add_line(out, r->labels[LC_LABEL_HINT], t->hint);
+    if (is_open) {
+        add_line(out, r->labels[LC_LABEL_AGAIN], t->reproduce);
     } else {
-        lc_plain(out, is_open ? t->sentence : t->shown);
-        fputs(t->hint[0] ? "\nHint: " : "", out);
-        lc_plain(out, t->hint);
-        fputs(!is_open ? "\n" : t->reproduce[0] ? "\nAgain: " : "", out);
-        lc_plain(out, is_open ? t->reproduce : t->withheld);
+        fputc('\n', out);
+        lc_plain(out, t->withheld);
     }
     return close_text(out, &text);
 }
@@ -115,22 +129,28 @@ char *lc_result_summary(const lc_grade_result *r)
     FILE *out = open_memstream(&text, &size);
     if (!out)
         return NULL;
-    fputs(r->is_ungradable ? "This could not be graded, and is no attempt. "
-          : r->is_fault    ? "A fault of ours, not of your file; it has to be graded again. "
-                           : "",
-          out);
-    if (r->is_ungradable || r->is_fault)
+    if (r->is_ungradable || r->is_fault) {
+        lc_plain(out, r->labels[r->is_fault ? LC_LABEL_FAULT : LC_LABEL_UNGRADABLE]);
+        fputs(": ", out);
         lc_plain(out, r->message);
-    else
-        fprintf(out, "%g of %g points.%s", r->points, r->most_points, r->done < r->test_count ? " Not all tests are judged yet." : "");
+    } else {
+        lc_plain(out, r->labels[LC_LABEL_SCORE]);
+        if (r->done < r->test_count) {
+            fputs(", ", out);
+            lc_plain(out, r->labels[LC_LABEL_INCOMPLETE]);
+        }
+        if (r->late_penalty > 0) {
+            fputc('\n', out);
+            lc_plain(out, r->labels[LC_LABEL_LATE]);
+        }
+    }
     fputc('\n', out);
-    if (r->late_penalty > 0)
-        fprintf(out, "%g days late: %g points less.\n", r->late_days, r->late_penalty);
     if (r->warnings[0]) {
-        fputs("The compiler says:\n", out);
+        lc_plain(out, r->labels[LC_LABEL_COMPILER]);
+        fputs(":\n", out);
         lc_plain_lines(out, r->warnings, "| ");
     }
-    fprintf(out, "Seed %llu; jail: %s.", (unsigned long long)r->seed, r->jail);
+    lc_plain(out, r->labels[LC_LABEL_SEED]);
     return close_text(out, &text);
 }
 

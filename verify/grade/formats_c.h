@@ -19,7 +19,7 @@ lc_status lc_json_dump(FILE *out, json_t *object, int ok, lc_error *err);
 /* The whole result in a few sentences for its author. */
 char *lc_result_summary(const lc_grade_result *result);
 /* What is known of a test: the sentence, hint, what to type; where `is_public`, less what is withheld. */
-char *lc_result_feedback(const lc_test_result *test, int is_public);
+char *lc_result_feedback(const lc_grade_result *result, const lc_test_result *test, int is_public);
 /* The same as JSON; frees the text. */
 json_t *lc_json_taken(char *text);
 

@@ -15,7 +15,7 @@ static json_t *known_json(double value) { return json_real(known(value)); }
 /* ---- Gradescope --------------------------------------------------------------------------------------------------- */
 
 /* gradescope-autograders.readthedocs.io: "specs". What is hidden is written, with its visibility: the teacher sees it. */
-static json_t *gradescope_test(const lc_test_result *t, int number, int *ok)
+static json_t *gradescope_test(const lc_grade_result *r, const lc_test_result *t, int number, int *ok)
 {
     char text[16];
     json_t *o = json_object();
@@ -25,7 +25,7 @@ static json_t *gradescope_test(const lc_test_result *t, int number, int *ok)
     lc_json_set(o, "score", known_json(t->points), ok);
     lc_json_set(o, "max_score", known_json(t->most_points), ok);
     lc_json_set(o, "status", json_string(t->status == LC_TEST_PASSED ? "passed" : "failed"), ok);
-    lc_json_set(o, "output", lc_json_taken(lc_result_feedback(t, 0)), ok);
+    lc_json_set(o, "output", lc_json_taken(lc_result_feedback(r, t, 0)), ok);
     lc_json_set(o, "output_format", json_string("text"), ok);
     lc_json_set(o, "visibility", json_string(lc_visibility_name(t->visibility)), ok);
     return o;
@@ -49,14 +49,14 @@ lc_status lc_result_gradescope(FILE *out, const lc_grade_result *r, int teacher,
     lc_json_set(extra, "complete", json_boolean(r->done == r->test_count), &ok);
     lc_json_set(o, "extra_data", extra, &ok);
     for (int i = 0; i < r->test_count; ++i)
-        lc_json_append(tests, gradescope_test(&r->tests[i], i + 1, &ok), &ok);
+        lc_json_append(tests, gradescope_test(r, &r->tests[i], i + 1, &ok), &ok);
     lc_json_set(o, "tests", tests, &ok);
     return lc_json_dump(out, o, ok, err);
 }
 
 /* ---- PrairieLearn -------------------------------------------------------------------------------------------------- */
 
-static json_t *prairielearn_test(const lc_test_result *t, int teacher, int *ok)
+static json_t *prairielearn_test(const lc_grade_result *r, const lc_test_result *t, int teacher, int *ok)
 {
     json_t *o = json_object();
     lc_json_set(o, "name", lc_json_text(t->title), ok);
@@ -64,7 +64,7 @@ static json_t *prairielearn_test(const lc_test_result *t, int teacher, int *ok)
     lc_json_set(o, "points", known_json(t->points), ok);
     lc_json_set(o, "max_points", known_json(t->most_points), ok);
     lc_json_set(o, "message", json_string(lc_test_status_name(t->status)), ok);
-    lc_json_set(o, "output", lc_json_taken(lc_result_feedback(t, !teacher)), ok);
+    lc_json_set(o, "output", lc_json_taken(lc_result_feedback(r, t, !teacher)), ok);
     return o;
 }
 
@@ -81,20 +81,20 @@ lc_status lc_result_prairielearn(FILE *out, const lc_grade_result *r, int teache
         lc_json_append(errors, lc_json_taken(lc_result_summary(r)), &ok);
     lc_json_set(o, "format_errors", errors, &ok);
     for (int i = 0; gradable && i < r->test_count; ++i)
-        lc_json_append(tests, prairielearn_test(&r->tests[i], teacher, &ok), &ok);
+        lc_json_append(tests, prairielearn_test(r, &r->tests[i], teacher, &ok), &ok);
     lc_json_set(o, "tests", tests, &ok);
     return lc_json_dump(out, o, ok, err);
 }
 
 /* ---- GitHub Classroom ----------------------------------------------------------------------------------------------- */
 
-static json_t *classroom_test(const lc_test_result *t, int teacher, int *ok)
+static json_t *classroom_test(const lc_grade_result *r, const lc_test_result *t, int teacher, int *ok)
 {
     json_t *o = json_object();
     lc_json_set(o, "name", lc_json_text(t->title), ok);
     lc_json_set(o, "status", json_string(t->status == LC_TEST_PASSED ? "pass" : t->status == LC_TEST_FAULT ? "error" : "fail"), ok);
     lc_json_set(o, "score", known_json(t->points), ok);
-    lc_json_set(o, "message", lc_json_taken(lc_result_feedback(t, !teacher)), ok);
+    lc_json_set(o, "message", lc_json_taken(lc_result_feedback(r, t, !teacher)), ok);
     return o;
 }
 
@@ -117,7 +117,7 @@ lc_status lc_result_classroom(FILE *out, const lc_grade_result *r, int teacher, 
     int ok = 1;
     json_t *o = json_object(), *tests = json_array();
     for (int i = 0; i < r->test_count; ++i)
-        lc_json_append(tests, classroom_test(&r->tests[i], teacher, &ok), &ok);
+        lc_json_append(tests, classroom_test(r, &r->tests[i], teacher, &ok), &ok);
     lc_json_set(o, "version", json_integer(1), &ok);
     lc_json_set(o, "status",
                 json_string(r->is_ungradable || r->is_fault        ? "error"
@@ -145,13 +145,13 @@ static void junit_attribute(FILE *out, const char *name, const char *value)
     fputc('"', out);
 }
 
-static lc_status junit_test(FILE *out, const char *assignment, const lc_test_result *t, int teacher, lc_error *err)
+static lc_status junit_test(FILE *out, const lc_grade_result *r, const lc_test_result *t, int teacher, lc_error *err)
 {
-    char *text = lc_result_feedback(t, !teacher);
+    char *text = lc_result_feedback(r, t, !teacher);
     if (!text)
         return lc_fail(err, LC_FAULT, "out of memory for a result");
     fputs("    <testcase", out);
-    junit_attribute(out, "classname", assignment);
+    junit_attribute(out, "classname", r->assignment);
     junit_attribute(out, "name", t->name);
     fprintf(out, " time=\"%.3f\"", known(t->seconds));
     const char *tag = t->status == LC_TEST_FAULT                                      ? "error"
@@ -198,7 +198,7 @@ lc_status lc_result_junit(FILE *out, const lc_grade_result *r, int teacher, lc_e
             (unsigned long long)r->seed, known(r->score));
     fprintf(out, "      <property name=\"max_score\" value=\"%g\"/>\n    </properties>\n", known(r->most_points));
     for (int i = 0; i < total && status == LC_OK; ++i)
-        status = junit_test(out, r->assignment, &r->tests[i], teacher, err);
+        status = junit_test(out, r, &r->tests[i], teacher, err);
     if (extra)
         junit_ungradable(out, r);
     fputs("  </testsuite>\n</testsuites>\n", out);

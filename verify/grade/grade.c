@@ -38,8 +38,13 @@ static void list_missing(lc_words *words, const lc_grading *g)
     for (int i = 0; i < 4; ++i)
         if (a->emitters & ~g->estimator->emitters & 1U << i)
             used += (size_t)snprintf(text + used, sizeof text - used, "%s%s", used ? ", " : "", emitters[i]);
-    if (g->estimator->max_bounces < a->bounces)
-        snprintf(text + used, sizeof text - used, "%s%d bounces", used ? ", " : "", a->bounces);
+    if (g->estimator->max_bounces < a->bounces) {
+        char bounces[64];
+        lc_words count = {.count = 0};
+        lc_words_set(&count, "count", "%d", a->bounces);
+        lc_say(bounces, sizeof bounces, g->sentences, "word_bounces", &count);
+        snprintf(text + used, sizeof text - used, "%s%s", used ? ", " : "", bounces);
+    }
     lc_words_set(words, "missing", "%s", text);
 }
 
@@ -210,16 +215,19 @@ static void set_late(lc_grading *g)
     r->late_penalty = fmin(a->late_most, a->late_per_day * r->late_days) * lc_assignment_points(a);
 }
 
-static void set_labels(lc_grade_result *r, const lc_sentences *sentences)
+void lc_grade_labels(lc_grade_result *r, const lc_sentences *sentences)
 {
     static const char *const ids[LC_LABELS] = {"label_hint",    "label_pictures", "label_again", "label_ungradable",
-                                               "label_printed", "label_fault",    "label_score", "label_late"};
+                                               "label_printed", "label_fault",    "label_score", "label_late",
+                                               "label_pending", "label_incomplete", "label_compiler", "label_seed"};
     lc_words words = {.count = 0};
     lc_words_set(&words, "score", "%.4g", r->score);
     lc_words_set(&words, "points", "%.4g", r->most_points);
     lc_words_set(&words, "earned", "%.4g", r->points);
     lc_words_set(&words, "penalty", "%.4g", r->late_penalty);
     lc_words_set(&words, "days", "%.0f", r->late_days);
+    lc_words_set(&words, "seed", "%llu", (unsigned long long)r->seed);
+    lc_words_set(&words, "jail", "%s", r->jail);
     for (int i = 0; i < LC_LABELS; ++i)
         lc_say(r->labels[i], sizeof r->labels[i], sentences, ids[i], &words);
 }
@@ -258,7 +266,7 @@ void lc_grade_refused(lc_grade_result *out, const lc_assignment *assignment, con
     lc_error none; /* without the course's words it is said in the program's */
     if (open_sentences(&sentences, assignment, &none) != LC_OK)
         sentences = NULL;
-    set_labels(out, sentences);
+    lc_grade_labels(out, sentences);
     lc_sentences_close(sentences);
 }
 
@@ -289,7 +297,7 @@ static lc_status start_result(lc_grading *g, lc_error *err)
     if (r->test_count == 0)
         return fail_no_test(a, o->only, err);
     set_late(g);
-    set_labels(g->result, g->sentences);
+    lc_grade_labels(g->result, g->sentences);
     return LC_OK;
 }
 
@@ -421,7 +429,7 @@ static lc_status judge_all(lc_grading *g, lc_error *err)
             status = judge_test(g, i, err);
         ++r->done;
         add_up(r);
-        set_labels(g->result, g->sentences);
+        lc_grade_labels(g->result, g->sentences);
         if (status == LC_OK)
             status = tell(g, err);
     }
@@ -474,7 +482,7 @@ lc_status lc_grade_file(lc_grade_result *out, const lc_assignment *assignment, c
     if (status == LC_OK) {
         add_up(out);
         out->seconds = now() - start;
-        set_labels(g->result, g->sentences);
+        lc_grade_labels(g->result, g->sentences);
         status = tell(g, err);
     }
     lc_grading_release(g);

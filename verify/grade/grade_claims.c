@@ -49,8 +49,9 @@ static void set_percent(lc_words *words, const char *name, double ratio)
         lc_words_set(words, name, fabs(percent) < 1000 ? "%.4g%%" : "%.3g%%", percent);
 }
 
-static void set_words(lc_words *words, const lc_test_result *out, const lc_row *row, const lc_claim *claim)
+static void set_words(lc_words *words, const lc_grading *g, const lc_test_result *out, const lc_row *row, const lc_claim *claim)
 {
+    char tile[64];
     const lc_measured *m = &out->measured;
     lc_words_set(words, "scene", "%s", row->scene);
     set_percent(words, "measured", m->measured);
@@ -61,10 +62,12 @@ static void set_words(lc_words *words, const lc_test_result *out, const lc_row *
     lc_words_set(words, "samples", "%llu", (unsigned long long)m->samples);
     lc_words_set(words, "paths", "%llu", (unsigned long long)m->paths);
     lc_words_set(words, "relation", "%.150s", claim->source);
-    lc_words_set(words, "tile", "%d x %d pixels at %d,%d", m->worst.width, m->worst.height, m->worst.x, m->worst.y);
     set_percent(words, "tile_measured", m->worst.ratio);
     lc_words_set(words, "x", "%d", m->worst.x);
     lc_words_set(words, "y", "%d", m->worst.y);
+    lc_words_set(words, "width", "%d", m->worst.width);
+    lc_words_set(words, "height", "%d", m->worst.height);
+    lc_words_set(words, "tile", "%s", lc_say(tile, sizeof tile, g->sentences, "word_tile", words));
     lc_words_set(words, "is", "%.6g", m->measured * m->expected);
     lc_words_set(words, "should", "%.6g", m->expected);
 }
@@ -89,7 +92,7 @@ static int is_black(const lc_film *film)
     return film != NULL;
 }
 
-static const char *sentence_of(const lc_row *row, const lc_claim *claim, const lc_seen *seen, double share)
+static const char *sentence_of(const lc_row *row, const lc_claim *claim, const lc_film *film, double share)
 {
     if (row->dependent)
         return "dependent";
@@ -99,11 +102,22 @@ static const char *sentence_of(const lc_row *row, const lc_claim *claim, const l
         return "relation_wrong";
     if (row->exact)
         return isfinite(row->ratio) ? "wrong_pixel" : "light_from_nowhere";
-    if (is_black(seen->film))
+    if (is_black(film))
         return "black";
     if (row->verdict == LC_ROW_UNDECIDED)
         return share > 0 ? "near" : "open";
     return share > 0 ? "wrong_but_near" : row->tile_width ? "wrong_tile" : "wrong";
+}
+
+double lc_test_row(lc_test_result *out, const lc_grading *g, const lc_claim *claim, const lc_row *row, const lc_film *film)
+{
+    lc_words words = {.count = 0};
+    double margin_shown, share = lc_grade_share(&margin_shown, row);
+    fill_numbers(out, row);
+    lc_test_settle(out, share);
+    set_words(&words, g, out, row, claim);
+    lc_test_say(out, g, sentence_of(row, claim, film, share), &words);
+    return share;
 }
 
 /* ---- one claim ---------------------------------------------------------------------------------------------------------- */
@@ -113,9 +127,8 @@ static double report(lc_test_result *out, const lc_grading *g, const lc_claim *c
 {
     const char *scene = lc_scene_description(claim->scene)->name;
     lc_words words = {.count = 0};
-    double margin_shown, share = lc_grade_share(&margin_shown, row);
     fill_numbers(out, row);
-    lc_test_settle(out, share);
+    lc_test_settle(out, 0);
     if (row->verdict == LC_ROW_FAIL && lc_test_ended(out, g, scene))
         return 0;
     if (seen->bad) {
@@ -129,9 +142,7 @@ static double report(lc_test_result *out, const lc_grading *g, const lc_claim *c
         lc_test_say(out, g, "fault", &words);
         return 0;
     }
-    set_words(&words, out, row, claim);
-    lc_test_say(out, g, sentence_of(row, claim, seen, share), &words);
-    return share;
+    return lc_test_row(out, g, claim, row, seen->film);
 }
 
 lc_status lc_grade_claims(lc_grading *g, const lc_job *job, lc_test_result *out, lc_error *err)

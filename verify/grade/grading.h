@@ -55,6 +55,10 @@ lc_status lc_grade_images(lc_grading *g, const lc_job *job, lc_test_result *out,
 /* The share of its points that a decided row earns, and the margin that was shown for it. */
 double lc_grade_share(double *margin_shown, const lc_row *row);
 
+/* What a row means for a test: numbers, status, points, sentence; returns the share of the points. `film`: what was rendered, or NULL. */
+double lc_test_row(lc_test_result *out, const lc_grading *g, const lc_claim *claim, const lc_row *row, const lc_film *film);
+/* The texts besides the tests, by what the result says now; `sentences` NULL: the program's own. */
+void lc_grade_labels(lc_grade_result *r, const lc_sentences *sentences);
 /* Sets status, points and code of a test from its share of the points. */
 void lc_test_settle(lc_test_result *out, double share);
 /* Writes sentence and its id. */

@@ -92,6 +92,10 @@ typedef enum lc_label {
     LC_LABEL_FAULT,
     LC_LABEL_SCORE,
     LC_LABEL_LATE,
+    LC_LABEL_PENDING,
+    LC_LABEL_INCOMPLETE,
+    LC_LABEL_COMPILER,
+    LC_LABEL_SEED,
     LC_LABELS
 } lc_label;
 

@@ -55,6 +55,14 @@ static const lc_sentence table[] = {
     {"fault", "the grader is at fault, not your file: {reason}; grade again"},
     {"skipped", "left out, because `{because}` did not pass"},
     {"no_compile", "it cannot be graded: {reason}"},
+    /* of a renderer, by its images */
+    {"images_claimed", "it runs, and claims what is asked for"},
+    {"images_claim_less", "its --describe does not name all materials, lights or bounces that are asked for"},
+    {"images_finite", "it renders; no pixel is NaN, infinite or negative"},
+    {"images_left_out", "left out: images of a renderer cannot tell"},
+    /* words in others */
+    {"word_tile", "{width} x {height} pixels at {x},{y}"},
+    {"word_bounces", "{count} bounces"},
     /* what is withheld */
     {"withheld", "scene, numbers and the command that reproduces this are not shown until {until}"},
     {"withheld_ever", "scene, numbers and the command that reproduces this are not shown: another seed draws another scene"},
@@ -74,6 +82,10 @@ static const lc_sentence table[] = {
     {"label_fault", "no score: the grader is at fault, not your file. Grade again."},
     {"label_score", "score {score} of {points}"},
     {"label_late", "{earned}, less {penalty}: days late: {days}"},
+    {"label_pending", "not judged yet"},
+    {"label_incomplete", "not all tests are judged yet"},
+    {"label_compiler", "the compiler says"},
+    {"label_seed", "seed {seed}, jail: {jail}"},
 };
 enum { COUNT = sizeof table / sizeof table[0] };
 

@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "verify/grade/formats.h"
+#include "verify/grade/grading.h"
 #include "verify/grade/metadata.h"
 #include "verify/grade/public.h"
 #include "verify/tests/xml_help.h"
@@ -188,9 +189,10 @@ static void fill_ungradable(lc_grade_result *r)
 
 static char text[1 << 16];
 
-static const char *write_result(const lc_grade_result *r, const char *format, int teacher)
+static const char *write_result(lc_grade_result *r, const char *format, int teacher)
 {
     lc_error err;
+    lc_grade_labels(r, NULL);
     FILE *file = tmpfile();
     ck_assert_msg(lc_format_find(format)->write(file, r, teacher, &err) == LC_OK, "%s", err.text);
     ck_assert(!ferror(file));
@@ -255,19 +257,19 @@ START_TEST(test_formats_gradescope)
     json_t *o = read_json(write_result(&r, "gradescope", 0));
     conforms(o, gradescope);
     ck_assert(number(o, "score") == 7);
-    ck_assert_ptr_nonnull(strstr(word(o, "output"), "1 days late: 7 points less"));
+    ck_assert_ptr_nonnull(strstr(word(o, "output"), "14, less 7: days late: 1"));
     ck_assert_str_eq(word(at(o, 0), "status"), "passed");
     ck_assert_str_eq(word(at(o, 1), "status"), "failed");
     ck_assert(number(at(o, 1), "score") == 4 && number(at(o, 1), "max_score") == 10);
     ck_assert_str_eq(word(at(o, 6), "visibility"), "after_due_date");
     ck_assert_ptr_nonnull(strstr(word(at(o, 6), "output"), "SECRET"));
-    ck_assert_str_eq(word(at(o, 5), "output"), "Not judged yet.");
+    ck_assert_str_eq(word(at(o, 5), "output"), "not judged yet");
     json_decref(o);
     fill_ungradable(&r);
     o = read_json(write_result(&r, "gradescope", 0));
     conforms(o, gradescope);
     ck_assert(number(o, "score") == 0);
-    ck_assert_ptr_nonnull(strstr(word(o, "output"), "could not be graded, and is no attempt. x.c:1: error: <'\\xff'>"));
+    ck_assert_ptr_nonnull(strstr(word(o, "output"), "ungradable, which costs no attempt: x.c:1: error: <'\\xff'>"));
     json_decref(o);
 }
 END_TEST
