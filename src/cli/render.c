@@ -59,8 +59,8 @@ static lc_status render_one(const lc_scene *scene, const lc_estimator *estimator
         print_summary(film, path);
     if (status == LC_OK && film->bad)
         status = lc_fail(err, LC_WRONG,
-                         "%s: %llu samples are NaN, infinite or negative (written as 0), the first (%g, %g, %g) at "
-                         "pixel %d,%d; see it with "
+                         "%s: %llu samples are NaN, infinite, negative or above 1e60 (written as 0), the first "
+                         "(%g, %g, %g) at pixel %d,%d; see it with "
                          "`lightcheck sample %s -e %s --pixel %d,%d --index %llu --seed %llu`",
                          path, (unsigned long long)film->bad, film->bad_value[0], film->bad_value[1],
                          film->bad_value[2], film->bad_x, film->bad_y, film->scene, film->estimator, film->bad_x,

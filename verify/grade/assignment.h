@@ -13,7 +13,7 @@
 
 typedef enum lc_test_kind {
     LC_KIND_DESCRIPTOR, /* compiles, and claims the lobes, emitters and bounces that are asked for */
-    LC_KIND_FINITE,     /* a few samples over its scenes: none is NaN, infinite or negative; nothing crashes or hangs */
+    LC_KIND_FINITE,     /* a few samples over its scenes: none is NaN, infinite, negative or huge; nothing crashes or hangs */
     LC_KIND_CHECK,      /* all claims of one check of `lightcheck verify` about its scenes */
     LC_KIND_MEAN,       /* the mean of the reference estimator over its scenes */
     LC_KIND_VARIANCE    /* the variance of the reference: the method that was asked for */

@@ -17,9 +17,9 @@ static const lc_sentence table[] = {
     {"compiled", "it compiles, and claims what is asked for: {language}"},
     {"claims_less", "it does not claim {missing}, which this assignment asks for: see the descriptor at the end of your file"},
     /* kind finite */
-    {"finite", "no sample of {paths} was NaN, infinite or negative, over {scene}"},
-    {"bad_sample", "{count} samples are NaN, infinite or negative over {scene}: the first is ({red}, {green}, {blue}) at pixel {x},{y}, sample "
-                   "{sample}, seed {seed}"},
+    {"finite", "no sample of {paths} was NaN, infinite, negative or above 1e60, over {scene}"},
+    {"bad_sample", "{count} samples are NaN, infinite, negative or above 1e60 over {scene}: the first is ({red}, {green}, {blue}) at "
+                   "pixel {x},{y}, sample {sample}, seed {seed}"},
     /* means */
     {"right", "{scene}: measured {measured} of the light that is expected, between {low} and {high}; all points ask for 100% +- {margin}"},
     {"right_exactly", "{scene}: every pixel has exactly the light that is expected"},

@@ -23,6 +23,7 @@ static const struct {
     {"handins", lc_suite_handins},
     {"verify", lc_suite_verify},
     {"grade", lc_suite_grade},
+    {"grade_fair", lc_suite_grade_fair},
     {"pov_sample", lc_suite_pov_sample},
     {"povray", lc_suite_povray},
     {"cli", lc_suite_cli},

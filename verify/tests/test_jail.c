@@ -259,6 +259,7 @@ static const struct {
     {"become_root", LC_JAIL_RTE},     {"giant_object", LC_JAIL_CE},        {"giant_messages", LC_JAIL_CE},
     {"include_itself", LC_JAIL_CE},   {"bad_descriptor", LC_JAIL_RTE},     {"long_name", LC_JAIL_CE},
     {"not_a_number", LC_JAIL_AC},     {"constant", LC_JAIL_AC},
+    {"huge", LC_JAIL_AC},
 };
 enum { CHEATS = sizeof cheats / sizeof cheats[0] };
 

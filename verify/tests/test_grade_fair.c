@@ -1,0 +1,120 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Files that once earned points for what they do not do, or that ended a grading without a result: each gets what it earns. */
+#include "verify/tests/tests.h"
+
+#include <math.h>
+#include <sys/wait.h>
+
+#include "verify/grade/grading.h"
+#include "verify/tests/grade_help.h"
+#include "verify/tests/load_help.h"
+
+static lc_grade_result r;
+
+static char source[64]; /* a file of its own, in a folder of its own */
+
+static void set_up(void)
+{
+    strcpy(source, "/tmp/lightcheck-test-XXXXXX");
+    ck_assert_ptr_nonnull(mkdtemp(source));
+    strcat(source, "/mine.c");
+}
+
+static void tear_down(void)
+{
+    unlink(source);
+    *strrchr(source, '/') = 0;
+    ck_assert_int_eq(rmdir(source), 0);
+}
+
+/* Direct light from one lamp, right as it stands; `c` is what the sample is worth. */
+#define RIGHT \
+    "#include \"lightcheck.h\"\n" \
+    "static lc_rgb light(const lc_scene *s, const lc_hit *h, lc_sampler *p)\n" \
+    "{\n" \
+    "    lc_light_sample l;\n" \
+    "    int count = lc_light_count(s);\n" \
+    "    if (!h->valid || !count)\n" \
+    "        return lc_black();\n" \
+    "    lc_light_sample_one(s, (int)(lc_next(p) * count), h, p, &l);\n" \
+    "    double cos_surface = lc_dot(lc_facing(h->n, h->wo), l.wi), cos_light = -lc_dot(l.n, l.wi);\n" \
+    "    if (!(cos_surface > 0 && cos_light > 0) || !lc_visible(s, h, &l))\n" \
+    "        return lc_black();\n" \
+    "    double g = cos_surface * cos_light / (l.distance * l.distance);\n" \
+    "    return lc_rgb_mul(lc_bsdf_eval(s, h, l.wi), lc_rgb_scale(count * g / l.pdf_area, l.radiance));\n" \
+    "}\n" \
+    "static lc_rgb radiance(const lc_scene *s, const lc_ray *r, const lc_hit *h, const lc_options *o, lc_sampler *p)\n" \
+    "{\n" \
+    "    lc_rgb c = lc_black();\n" \
+    "    if (o->min_bounces <= 0)\n" \
+    "        c = lc_emission(s, h);\n" \
+    "    if (o->max_bounces >= 1 && o->min_bounces <= 1)\n" \
+    "        c = lc_rgb_add(c, light(s, h, p));\n"
+#define END(bounces) \
+    "    return c;\n}\n" \
+    "LC_ESTIMATOR(mine) = {LC_ABI, \"mine\", \"m\", \"me\", LC_DIFFUSE, LC_AREA, " bounces ", radiance};\n"
+
+static void write_source(const char *text)
+{
+    FILE *f = fopen(source, "w");
+    ck_assert_ptr_nonnull(f);
+    fputs(text, f);
+    ck_assert_int_eq(fclose(f), 0);
+}
+
+/* What a command prints; its exit status. */
+static int run(char *said, size_t size, const char *line)
+{
+    char command[1024];
+    snprintf(command, sizeof command, "%s 2>&1", line);
+    FILE *pipe = popen(command, "r");
+    ck_assert_ptr_nonnull(pipe);
+    said[fread(said, 1, size - 1, pipe)] = 0;
+    int status = pclose(pipe);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+static const char *program(void) { return getenv("LIGHTCHECK") ? getenv("LIGHTCHECK") : "build/lightcheck"; }
+
+#define TEST(name, kind, rest) "{\"name\": \"" name "\", \"title\": \"T\", \"kind\": \"" kind "\", \"points\": 1" rest "}"
+#define LAMP_ONLY TEST("lamp", "check", ", \"check\": \"analytic\", \"scenes\": [\"plane_rectangle\"]")
+
+/* ---- samples that cannot be squared ----------------------------------------------------------------------------------- */
+
+static const char *const huge[] = {"1e300", "1e150", "1e100"};
+
+/* A wrong answer with its place, not an error of the judge that ends the grading. */
+START_TEST(test_fair_huge)
+{
+    static char said[1 << 14];
+    char line[700], text[2048];
+    snprintf(text, sizeof text, RIGHT "    c.g *= %s;\n" END("1"), huge[_i]);
+    assign(HEAD "\"tests\": [" LAMP_ONLY "]}");
+    write_source(text);
+    lc_grade_options o = options();
+    o.program = program();
+    for (o.is_open = 0; o.is_open < 2; ++o.is_open) {
+        grade(&r, source, &o);
+        const lc_test_result *t = &r.tests[0];
+        ck_assert_int_eq(t->code, LC_JAIL_WA);
+        ck_assert_str_eq(t->sentence_id, "bad_sample");
+        ck_assert(t->measured.bad_x >= 0 && t->measured.bad_value[1] > LC_LARGEST_SAMPLE);
+    }
+    ck_assert_int_eq(run(said, sizeof said, r.tests[0].reproduce), 0);
+    ck_assert_msg(strstr(said, "radiance (") && strstr(said, "e+"), "%s", said);
+    snprintf(line, sizeof line, "%s verify -e %s -c analytic --scene plane_rectangle", program(), source);
+    ck_assert_msg(run(said, sizeof said, line) == 1, "%s", said);
+    ck_assert_msg(strstr(said, "above 1e60, the first (") && strstr(said, "at pixel "), "%s", said);
+}
+END_TEST
+
+Suite *lc_suite_grade_fair(void)
+{
+    Suite *suite = suite_create("grade_fair");
+    TCase *tcase = tcase_create("fair");
+    tcase_set_timeout(tcase, 200);
+    tcase_add_checked_fixture(tcase, set_up, tear_down);
+    tcase_add_loop_test(tcase, test_fair_huge, 0, sizeof huge / sizeof huge[0]);
+    suite_add_tcase(suite, tcase);
+    return suite;
+}
