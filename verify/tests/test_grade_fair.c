@@ -108,6 +108,32 @@ START_TEST(test_fair_huge)
 }
 END_TEST
 
+/* ---- files that claim less than a test asks for ----------------------------------------------------------------------- */
+
+/* Each test that needs more bounces fails, and says why; the others are judged. Once, the grading ended without a result. */
+START_TEST(test_fair_claims_less)
+{
+    assign(HEAD "\"tests\": [" TEST("finite", "finite", ", \"scenes\": [\"plane_rectangle\"]") ", "
+                TEST("seen", "finite", ", \"scenes\": [\"plane_rectangle\"], \"bounces\": [0, 0]") ", " LAMP_ONLY ", "
+                TEST("mean", "mean", ", \"scenes\": [\"occluder\"]") ", "
+                TEST("hidden", "check", ", \"check\": \"analytic\", \"scenes\": [\"random_rectangle\"], \"visibility\": \"hidden\"") ", "
+                TEST("method", "variance", ", \"scenes\": [\"plane_rectangle\"], \"at_most\": 2") "]}");
+    write_source(RIGHT END("0"));
+    lc_grade_options o = options();
+    for (o.is_open = 0; o.is_open < 2; ++o.is_open) {
+        grade(&r, source, &o);
+        ck_assert_int_eq(lc_grade_status(&r), LC_WRONG);
+        for (int i = 0; i < r.test_count; ++i) {
+            const lc_test_result *t = &r.tests[i];
+            int is_fewer = strcmp(t->name, "seen") == 0;
+            ck_assert_msg(t->code == (is_fewer ? LC_JAIL_AC : LC_JAIL_WA), "%s: %s", t->name, t->sentence);
+            ck_assert_str_eq(t->sentence_id, is_fewer ? "finite" : "claims_less");
+            ck_assert(is_fewer || strstr(t->sentence, "does not claim 1 bounce,"));
+        }
+    }
+}
+END_TEST
+
 Suite *lc_suite_grade_fair(void)
 {
     Suite *suite = suite_create("grade_fair");
@@ -115,6 +141,7 @@ Suite *lc_suite_grade_fair(void)
     tcase_set_timeout(tcase, 200);
     tcase_add_checked_fixture(tcase, set_up, tear_down);
     tcase_add_loop_test(tcase, test_fair_huge, 0, sizeof huge / sizeof huge[0]);
+    tcase_add_test(tcase, test_fair_claims_less);
     suite_add_tcase(suite, tcase);
     return suite;
 }
