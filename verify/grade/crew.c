@@ -28,7 +28,7 @@ typedef struct worker {
     pid_t pid;
     int samples, said; /* our ends of the pipes; -1: closed */
     killed_for reason;
-    int greeted;
+    int greeted, died_alone; /* before we killed it */
     lc_wire_greeting greeting;
     /* Where the next bytes go. */
     char *target;
@@ -149,6 +149,20 @@ static void stop(worker *w, killed_for reason)
     }
 }
 
+/* A process that ends closes its pipes a moment before it is dead. One that lives on has closed them itself, and is killed by us; only when that
+ * is told apart does it mean something to have died of SIGKILL. */
+static int dies_alone(pid_t pid)
+{
+    const struct timespec pause = {0, 1000000};
+    for (int i = 0; i < 200; ++i) {
+        siginfo_t info = {0};
+        if (waitid(P_PID, (id_t)pid, &info, WEXITED | WNOHANG | WNOWAIT) != 0 || info.si_pid != 0)
+            return 1;
+        nanosleep(&pause, NULL);
+    }
+    return 0;
+}
+
 static void expect(worker *w, void *target, size_t wanted)
 {
     w->target = target;
@@ -241,6 +255,7 @@ static void read_samples(crew *c, worker *w)
     if (n < 0 && (errno == EAGAIN || errno == EINTR))
         return;
     if (n <= 0) {
+        w->died_alone = dies_alone(w->pid);
         stop(w, CLOSED);
         end_pipe(&w->samples);
         return;
@@ -331,11 +346,22 @@ static const char *name_of_signal(int number)
         return "it ran into an invalid instruction: a function without a return, perhaps";
     case SIGABRT:
         return "it aborted: a failed assertion, or a broken heap";
+    case SIGTRAP:
+        return "it ran into a trap: a function without a return, perhaps, or a breakpoint";
     case SIGSYS:
         return "it made a system call that no estimator needs: files, processes, network, waiting";
     default:
-        return NULL;
+        return "it ended itself by a signal";
     }
+}
+
+/* What other processes send, and a machine without memory. Under seccomp a file can send itself SIGABRT and no other signal; all that the kernel
+ * sends for what code does, rare ones like SIGTRAP too, is the file's own fault. Without seccomp any signal may be its own, and is: or it
+ * would be graded again for ever, and a wrong file had no 0. */
+static int is_from_outside(const worker *w, int number)
+{
+    int is_sent = number == SIGKILL || number == SIGTERM || number == SIGHUP || number == SIGINT || number == SIGQUIT;
+    return is_sent && (w->greeting.reached & LC_JAIL_SECCOMP);
 }
 
 static void judge_end(crew *c, const worker *w, int status, const struct rusage *use, double cpu)
@@ -344,7 +370,7 @@ static void judge_end(crew *c, const worker *w, int status, const struct rusage 
     if (w->reason == COMPLETE || w->reason == OUTPUT || w->reason == TIME || w->reason == OTHERS)
         return;
     int number = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
-    int ours = w->reason == CLOSED && number == SIGKILL; /* it only closed its pipe, or was about to end */
+    int ours = number == SIGKILL && !w->died_alone; /* it only closed its pipe */
     if (!w->greeted) {
         judge(c, LC_JAIL_IE, "a worker did not begin: %s %d", number ? "signal" : "exit status",
               number ? number : WEXITSTATUS(status));
@@ -353,12 +379,13 @@ static void judge_end(crew *c, const worker *w, int status, const struct rusage 
     } else if (number && number != SIGSYS && (double)use->ru_maxrss * 1024 >= 0.75 * (double)limits->memory) {
         judge(c, LC_JAIL_MLE, "it died with its memory full: %llu MiB are allowed",
               (unsigned long long)(limits->memory >> 20));
-    } else if (name_of_signal(number)) {
-        judge(c, LC_JAIL_RTE, "%s (signal %d)", name_of_signal(number), number);
-    } else if (number && !ours) {
-        judge(c, LC_JAIL_IE, "a worker was ended from outside, by signal %d", number);
     } else if (ours) {
-        judge(c, LC_JAIL_IR, "it ended, or closed its output, before all samples were made");
+        judge(c, LC_JAIL_IR, "it closed its output before all samples were made");
+    } else if (is_from_outside(w, number)) {
+        judge(c, LC_JAIL_IE, "a worker was ended from outside, by signal %d%s", number,
+              number == SIGKILL ? ", as by a machine that has no memory left" : "");
+    } else if (number) {
+        judge(c, LC_JAIL_RTE, "%s (signal %d)", name_of_signal(number), number);
     } else {
         judge(c, LC_JAIL_IR, "it ended by itself, with exit status %d, before all samples were made",
               WEXITSTATUS(status));

@@ -12,6 +12,7 @@
 #include <sys/prctl.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "estimators/registry.h"
@@ -259,7 +260,8 @@ static const struct {
     {"become_root", LC_JAIL_RTE},     {"giant_object", LC_JAIL_CE},        {"giant_messages", LC_JAIL_CE},
     {"include_itself", LC_JAIL_CE},   {"bad_descriptor", LC_JAIL_RTE},     {"long_name", LC_JAIL_CE},
     {"not_a_number", LC_JAIL_AC},     {"constant", LC_JAIL_AC},
-    {"huge", LC_JAIL_AC},
+    {"huge", LC_JAIL_AC},             {"trap", LC_JAIL_RTE},               {"trap_in_constructor", LC_JAIL_RTE},
+    {"trap_flag", LC_JAIL_RTE},
 };
 enum { CHEATS = sizeof cheats / sizeof cheats[0] };
 
@@ -475,6 +477,69 @@ START_TEST(test_jail_levels)
 }
 END_TEST
 
+/* ---- signals from outside -------------------------------------------------------------------------------------------- */
+
+/* The worker of `parent`: its child that is not this process; 0 where there is none yet. */
+static pid_t worker_of(pid_t parent)
+{
+    char path[64];
+    int child = 0;
+    snprintf(path, sizeof path, "/proc/%d/task/%d/children", (int)parent, (int)parent);
+    FILE *file = fopen(path, "r");
+    ck_assert_ptr_nonnull(file);
+    while (fscanf(file, "%d", &child) == 1 && child == (int)getpid())
+        child = 0;
+    fclose(file);
+    return child;
+}
+
+/* In a process of its own: kills the worker of `parent` once it computes. */
+static void strike(pid_t parent, int number)
+{
+    const struct timespec pause = {0, 700000000};
+    pid_t worker = 0;
+    while (worker == 0)
+        worker = worker_of(parent);
+    nanosleep(&pause, NULL);
+    kill(worker, number);
+    _exit(0);
+}
+
+/* Whoever kills a worker, as a machine without memory does, is not the file; a file under seccomp cannot do that to itself. Without
+ * seccomp it can, so that nothing is believed there. */
+START_TEST(test_jail_killed_from_outside)
+{
+    static const struct {
+        int number;
+        unsigned without;
+        lc_jail_code code;
+    } blows[] = {{SIGKILL, 0, LC_JAIL_IE}, {SIGTERM, 0, LC_JAIL_IE}, {SIGHUP, 0, LC_JAIL_IE}, {SIGKILL, LC_JAIL_SECCOMP, LC_JAIL_RTE}};
+    lc_scene *scene = load("plane_rectangle");
+    lc_film *film = make_film(8, 8);
+    lc_render_options o = {.max_bounces = 1, .count = 1, .threads = 1};
+    lc_error err = {""};
+    for (size_t i = 0; i < sizeof blows / sizeof blows[0]; ++i) {
+        lc_jail *jail;
+        lc_jail_options options;
+        lc_jail_options_init(&options);
+        options.parts &= ~blows[i].without;
+        options.cpu_seconds = 20;
+        ck_assert_int_eq(lc_jail_open(&jail, "verify/tests/cheats/loop.c", &options, NULL, &err), LC_OK);
+        pid_t parent = getpid(), killer = fork();
+        if (killer == 0)
+            strike(parent, blows[i].number);
+        lc_status status = lc_render(film, scene, lc_jail_estimator(jail), &o, &err);
+        ck_assert_int_eq(waitpid(killer, NULL, 0), killer);
+        ck_assert_msg(lc_jail_last(jail)->code == blows[i].code, "signal %d: %s", blows[i].number, err.text);
+        ck_assert_int_eq(status, blows[i].code == LC_JAIL_IE ? LC_FAULT : LC_WRONG);
+        lc_jail_close(jail);
+    }
+    lc_film_free(film);
+    lc_scene_free(scene);
+    check_clean("killed");
+}
+END_TEST
+
 /* ---- the program --------------------------------------------------------------------------------------------------- */
 
 static int run(char *said, size_t size, const char *arguments)
@@ -542,6 +607,7 @@ Suite *lc_suite_jail(void)
     tcase_add_test(tcase, test_jail_links);
     tcase_add_test(tcase, test_jail_walls);
     tcase_add_test(tcase, test_jail_levels);
+    tcase_add_test(tcase, test_jail_killed_from_outside);
     tcase_add_test(tcase, test_jail_verify);
     tcase_add_test(tcase, test_jail_no_worker);
     tcase_add_test(tcase, test_jail_cheats);
