@@ -66,7 +66,7 @@ static void write_source(const char *text)
 static int run(char *said, size_t size, const char *line)
 {
     char command[1024];
-    snprintf(command, sizeof command, "%s 2>&1", line);
+    snprintf(command, sizeof command, "exec 2>&1; %s", line);
     FILE *pipe = popen(command, "r");
     ck_assert_ptr_nonnull(pipe);
     said[fread(said, 1, size - 1, pipe)] = 0;
@@ -108,6 +108,34 @@ START_TEST(test_fair_huge)
 }
 END_TEST
 
+/* ---- faults of ours ---------------------------------------------------------------------------------------------------- */
+
+/* Kills the workers of the grading $p, once they compute. */
+static const char kill_workers[] =
+    "for i in $(seq 200); do c=$(cat /proc/$p/task/$p/children); "
+    "if [ -n \"$c\" ] && grep -q ^lightcheck-work /proc/${c%% *}/comm; then "
+    "sleep 0.5; kill -9 $(cat /proc/$p/task/$p/children); break; fi; sleep 0.05; done;";
+
+/* A grading that a fault of ours ends midway has a result all the same: it says so. */
+START_TEST(test_fair_fault_is_written)
+{
+    static char said[1 << 14];
+    char line[1000], path[64];
+    strcpy(path, source);
+    strcpy(strrchr(path, '/'), "/a.json");
+    FILE *f = fopen(path, "w");
+    ck_assert_ptr_nonnull(f);
+    fputs("{\"title\": \"T\", \"reference\": \"three_point\", \"bounces\": 1, \"tests\": [" LAMP_ONLY ", "
+          TEST("mean", "mean", ", \"scenes\": [\"occluder\"]") "]}", f);
+    ck_assert_int_eq(fclose(f), 0);
+    snprintf(line, sizeof line, "%s grade verify/tests/cheats/loop.c -a %s --format json & p=$!; %s wait $p", program(), path, kill_workers);
+    int status = run(said, sizeof said, line);
+    unlink(path);
+    ck_assert_msg(status == LC_FAULT, "%d: %.500s", status, said);
+    ck_assert_msg(strstr(said, "\"IE\"") && strstr(said, "ended from outside, by signal 9"), "%.500s", said);
+}
+END_TEST
+
 /* ---- files that claim less than a test asks for ----------------------------------------------------------------------- */
 
 /* Each test that needs more bounces fails, and says why; the others are judged. Once, the grading ended without a result. */
@@ -141,6 +169,7 @@ Suite *lc_suite_grade_fair(void)
     tcase_set_timeout(tcase, 200);
     tcase_add_checked_fixture(tcase, set_up, tear_down);
     tcase_add_loop_test(tcase, test_fair_huge, 0, sizeof huge / sizeof huge[0]);
+    tcase_add_test(tcase, test_fair_fault_is_written);
     tcase_add_test(tcase, test_fair_claims_less);
     suite_add_tcase(suite, tcase);
     return suite;
