@@ -55,7 +55,7 @@ typedef struct lc_assignment {
     int hint_after_attempts;         /* no hint before this many attempts */
     time_t due, published;           /* 0: never set */
     double late_per_day, late_most;  /* share of all points a begun day, and at most; 0: the course's own system does it */
-    double cpu_seconds;              /* for the file, all tests together; more is TLE */
+    double cpu_seconds;              /* for the file, all tests and workers together; more is TLE */
     char sentences[256];             /* a translated table (sentences.h), beside the assignment's file; "": the program's */
     lc_test tests[LC_MOST_TESTS];
     int test_count;

@@ -315,7 +315,7 @@ static lc_status open_in_jail(lc_grading *g, lc_jail_verdict *why, lc_error *err
     lc_jail_options options;
     lc_jail_options_init(&options);
     options.cpu_seconds = g->cpu_left;
-    options.wall_seconds = 2 * g->cpu_left; /* no process that computes comes near it */
+    options.wall_seconds = 60 + 10 * g->cpu_left; /* a machine as busy as that is at fault */
     lc_status status = lc_jail_open(&g->jail, g->path, &options, why, err);
     if (status != LC_OK)
         return status;

@@ -5,6 +5,7 @@
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -261,7 +262,7 @@ static const struct {
     {"include_itself", LC_JAIL_CE},   {"bad_descriptor", LC_JAIL_RTE},     {"long_name", LC_JAIL_CE},
     {"not_a_number", LC_JAIL_AC},     {"constant", LC_JAIL_AC},
     {"huge", LC_JAIL_AC},             {"trap", LC_JAIL_RTE},               {"trap_in_constructor", LC_JAIL_RTE},
-    {"trap_flag", LC_JAIL_RTE},
+    {"trap_flag", LC_JAIL_RTE},       {"wait_for_itself", LC_JAIL_AC},
 };
 enum { CHEATS = sizeof cheats / sizeof cheats[0] };
 
@@ -513,7 +514,8 @@ START_TEST(test_jail_killed_from_outside)
         int number;
         unsigned without;
         lc_jail_code code;
-    } blows[] = {{SIGKILL, 0, LC_JAIL_IE}, {SIGTERM, 0, LC_JAIL_IE}, {SIGHUP, 0, LC_JAIL_IE}, {SIGKILL, LC_JAIL_SECCOMP, LC_JAIL_RTE}};
+    } blows[] = {{SIGKILL, 0, LC_JAIL_IE}, {SIGTERM, 0, LC_JAIL_IE}, {SIGHUP, 0, LC_JAIL_IE}, {SIGSTOP, 0, LC_JAIL_IE},
+                 {SIGKILL, LC_JAIL_SECCOMP, LC_JAIL_RTE}};
     lc_scene *scene = load("plane_rectangle");
     lc_film *film = make_film(8, 8);
     lc_render_options o = {.max_bounces = 1, .count = 1, .threads = 1};
@@ -524,6 +526,7 @@ START_TEST(test_jail_killed_from_outside)
         lc_jail_options_init(&options);
         options.parts &= ~blows[i].without;
         options.cpu_seconds = 20;
+        options.wall_seconds = blows[i].number == SIGSTOP ? 7 : 600; /* longer than any patience with one that sleeps */
         ck_assert_int_eq(lc_jail_open(&jail, "verify/tests/cheats/loop.c", &options, NULL, &err), LC_OK);
         pid_t parent = getpid(), killer = fork();
         if (killer == 0)
@@ -537,6 +540,61 @@ START_TEST(test_jail_killed_from_outside)
     lc_film_free(film);
     lc_scene_free(scene);
     check_clean("killed");
+}
+END_TEST
+
+/* Without seccomp a file can sleep: it is told from one that gets no processor, long before the clock is at its limit. */
+START_TEST(test_jail_sleeps)
+{
+    lc_jail *jail;
+    lc_jail_options options;
+    lc_error err = {""};
+    lc_scene *scene = load("plane_rectangle");
+    lc_film *film = make_film(16, 16);
+    lc_render_options o = {.max_bounces = 1, .count = 1, .threads = 3};
+    lc_jail_options_init(&options);
+    options.parts &= ~(unsigned)LC_JAIL_SECCOMP;
+    options.any_symbol = 1;
+    ck_assert_int_eq(lc_jail_open(&jail, "verify/tests/cheats/sleep.c", &options, NULL, &err), LC_OK);
+    ck_assert_int_eq(lc_render(film, scene, lc_jail_estimator(jail), &o, &err), LC_WRONG);
+    ck_assert_int_eq(lc_jail_last(jail)->code, LC_JAIL_TLE);
+    ck_assert_msg(strstr(err.text, "of waiting for what does not come"), "%s", err.text);
+    ck_assert_double_lt(lc_jail_last(jail)->cpu_seconds, 1);
+    lc_jail_close(jail);
+    lc_film_free(film);
+    lc_scene_free(scene);
+    check_clean("sleeps");
+}
+END_TEST
+
+/* Workers side by side have one limit of time together, and what it takes to start them is not the file's. */
+START_TEST(test_jail_time_is_of_all)
+{
+    static const int workers[] = {1, 2, 8};
+    char path[128];
+    double first = 0;
+    lc_error err = {""};
+    lc_scene *scene = load("cornell");
+    snprintf(path, sizeof path, "%s/kept.c", folder);
+    write_source(path, PLUGIN("for (volatile int i = 0; i < 20000; ++i) {}\n"));
+    for (int i = 0; i < 6; ++i) { /* once with time enough, once with less than it takes */
+        lc_jail *jail = open_honest(path);
+        lc_film *film = make_film(64, 64);
+        lc_render_options o = {.max_bounces = 1, .count = 8, .threads = workers[i % 3]};
+        lc_jail_set_cpu(jail, i < 3 ? 100 : 0.6 * first);
+        lc_status status = lc_render(film, scene, lc_jail_estimator(jail), &o, &err);
+        double cpu = lc_jail_last(jail)->cpu_seconds;
+        if (i == 0)
+            first = cpu;
+        ck_assert_msg(status == (i < 3 ? LC_OK : LC_WRONG), "%d workers: %s", o.threads, err.text);
+        ck_assert_int_eq(lc_jail_last(jail)->code, i < 3 ? LC_JAIL_AC : LC_JAIL_TLE);
+        ck_assert_msg(i >= 3 || fabs(cpu / first - 1) < 0.5, "%d workers: %g s, one: %g s", o.threads, cpu, first);
+        ck_assert_double_eq_tol(lc_jail_cpu_left(jail), (i < 3 ? 100 : 0.6 * first) - cpu, 1e-9);
+        lc_jail_close(jail);
+        lc_film_free(film);
+    }
+    lc_scene_free(scene);
+    check_clean("time");
 }
 END_TEST
 
@@ -608,6 +666,8 @@ Suite *lc_suite_jail(void)
     tcase_add_test(tcase, test_jail_walls);
     tcase_add_test(tcase, test_jail_levels);
     tcase_add_test(tcase, test_jail_killed_from_outside);
+    tcase_add_test(tcase, test_jail_sleeps);
+    tcase_add_test(tcase, test_jail_time_is_of_all);
     tcase_add_test(tcase, test_jail_verify);
     tcase_add_test(tcase, test_jail_no_worker);
     tcase_add_test(tcase, test_jail_cheats);
