@@ -66,7 +66,7 @@ lc_status lc_grade_finite(lc_grading *g, const lc_job *job, lc_test_result *out,
         lc_render_options o = {.min_bounces = job->test->min_bounces < 0 ? 0 : job->test->min_bounces,
                                .max_bounces = job->test->max_bounces < 0 ? g->assignment->bounces : job->test->max_bounces,
                                .seed = job->seed,
-                               .arm = lc_session_arm(g->estimator) ^ lc_arm("finite"),
+                               .arm = lc_session_arm(g->estimator),
                                .count = LC_BLOCK,
                                .threads = g->options->threads};
         lc_status status = lc_film_create(&film, desc->width, desc->height, err);

@@ -46,6 +46,10 @@ static const lc_sentence table[] = {
                      "least {least}: is it that method?"},
     {"variance_open", "{scene}: a sample varies {measured} as much as one of the method that is asked for, between {low} and {high}: too "
                       "uncertain to tell"},
+    {"variance_wrong", "{scene}: noise counts of right samples only: the mean of these is {mean} of the light that is expected, shown wrong most "
+                       "clearly in the {tile}"},
+    {"variance_unshown", "{scene}: a sample varies {measured} as much as one of the method that is asked for, but the mean of these samples, {mean} "
+                         "of what is expected, is not shown right within {margin}"},
     /* how it ended */
     {"ended_RTE", "{scene}: it died: {reason}"},
     {"ended_TLE", "{scene}: it took too long: {reason}"},

@@ -2,6 +2,7 @@
 /* Files that once earned points for what they do not do, or that ended a grading without a result: each gets what it earns. */
 #include "verify/tests/tests.h"
 
+#include <dirent.h>
 #include <math.h>
 #include <sys/wait.h>
 
@@ -162,6 +163,111 @@ START_TEST(test_fair_claims_less)
 }
 END_TEST
 
+/* ---- methods that are not used, and answers learnt by heart ------------------------------------------------------------ */
+
+/* cheats/learnt/: files that are right somewhere, and say whatever is asked for elsewhere. `lamp` and `method` are over a public scene, the others
+ * over one that is drawn and hidden. What is learnt by heart earns points where it is right, over scenes that everybody can see: a
+ * table of their images is an answer as good as another. Nothing is earned for a method that is not used, nor over scenes
+ * that the file has not seen. */
+static const struct {
+    const char *name;
+    int lamp, method, drawn, drawn_method;
+} learnt[] = {
+    {"dark_noise", 1, 0, 1, 0}, {"dim_noise", 1, 0, 1, 0},  {"running_mean", 1, 0, 1, 0},
+    {"known_scene", 1, 1, 0, 0}, {"known_bounces", 1, 0, 1, 0},
+};
+enum { LEARNT = sizeof learnt / sizeof learnt[0] };
+
+static void assign_method(void)
+{
+    assign(HEAD "\"tests\": [" LAMP_ONLY ", " TEST("method", "variance", ", \"scenes\": [\"plane_rectangle\"], \"at_most\": 2") ", "
+                TEST("drawn", "check", ", \"check\": \"analytic\", \"scenes\": [\"random_rectangle\"], \"visibility\": \"hidden\"") ", "
+                TEST("drawn_method", "variance", ", \"scenes\": [\"random_rectangle\"], \"at_most\": 2, \"visibility\": \"hidden\"") "]}");
+}
+
+START_TEST(test_fair_learnt)
+{
+    const int earned[] = {learnt[_i].lamp, learnt[_i].method, learnt[_i].drawn, learnt[_i].drawn_method};
+    char path[128];
+    assign_method();
+    lc_grade_options o = options();
+    o.seed = 20 + (uint64_t)_i;
+    snprintf(path, sizeof path, "verify/tests/cheats/learnt/%s.c", learnt[_i].name);
+    grade(&r, path, &o);
+    for (int i = 0; i < 4; ++i) {
+        const lc_test_result *t = &r.tests[i];
+        ck_assert_msg((t->points >= 1) == earned[i], "%s: %g points for %s: %s", path, t->points, t->name, t->sentence);
+        ck_assert_msg(earned[i] || !(t->points > 0), "%s: %g points for %s: %s", path, t->points, t->name, t->sentence);
+        ck_assert_msg(!strstr(t->sentence, "nan") && !strstr(t->sentence, "inf "), "%s", t->sentence);
+    }
+}
+END_TEST
+
+/* ---- without noise ------------------------------------------------------------------------------------------------------- */
+
+static const lc_estimator *base;
+static double factor; /* < 0: -factor times as much, in every -factor-th sample */
+
+static lc_rgb changed(const lc_scene *scene, const lc_ray *ray, const lc_hit *hit, const lc_options *o, lc_sampler *sampler)
+{
+    lc_rgb c = base->radiance(scene, ray, hit, o, sampler);
+    return lc_rgb_scale(factor >= 0 ? factor : lc_next(sampler) * -factor < 1 ? -factor : 0, c);
+}
+
+/* Right files may have no noise at all, where the reference has some or none; nothing is then known of their error, but of the
+ * reference's. Where the light is wrong, its noise counts for nothing. */
+static const struct {
+    const char *reference, *scene, *bounds, *estimator;
+    double factor;
+    const char *sentence, *says;
+} still[] = {
+    {"hemisphere_direct", "furnace_sphere", "\"at_most\": 2", "hemisphere_cosine", 1, "variance_right", " 0 times"},
+    {"hemisphere_direct", "furnace_sphere", "\"at_least\": 0.5, \"at_most\": 2", "hemisphere_cosine", 1, "variance_low", " 0 times"},
+    {"hemisphere_direct", "furnace_sphere", "\"at_most\": 2", "hemisphere_cosine", 0.9, "variance_wrong", "32 x 32 pixels at 0,0"},
+    {"hemisphere_direct", "furnace_sphere", "\"at_most\": 2", "hemisphere_direct", 0.9, "variance_wrong", "32 x 32 pixels at 0,0"},
+    {"hemisphere_direct", "furnace_sphere", "\"at_most\": 2", "hemisphere_direct", 0, "variance_wrong", "is 0% of"},
+    {"hemisphere_direct", "furnace_sphere", "\"at_most\": 2", "hemisphere_direct", 1e-200, "variance_wrong", "e-198% of"},
+    {"light_direct", "plane_directional", "\"at_most\": 2", "light_all", 1, "variance_right", " 1 times"},
+    {"light_direct", "plane_directional", "\"at_most\": 2", "light_all", 0.99, "variance_wrong", "is 99% of"},
+    {"light_direct", "plane_directional", "\"at_most\": 2", "light_all", 0, "variance_wrong", "is 0% of"},
+    {"light_direct", "plane_directional", "\"at_most\": 2", "light_all", -2, "variance_high", "infinitely many times"},
+};
+
+START_TEST(test_fair_still)
+{
+    char text[1024];
+    lc_estimator e = *lc_right_estimator(still[_i].estimator);
+    snprintf(text, sizeof text,
+             "{\"title\": \"T\", \"reference\": \"%s\", \"bounces\": 1, \"tests\": [" TEST("method", "variance", ", \"scenes\": [\"%s\"], %s") "]}",
+             still[_i].reference, still[_i].scene, still[_i].bounds);
+    assign(text);
+    base = lc_right_estimator(still[_i].estimator);
+    factor = still[_i].factor;
+    e.radiance = changed;
+    lc_grade_options o = options();
+    o.estimator = &e;
+    grade(&r, "mine.c", &o);
+    const lc_test_result *t = &r.tests[0];
+    ck_assert_msg(strcmp(t->sentence_id, still[_i].sentence) == 0 && strstr(t->sentence, still[_i].says), "%s: %s", t->sentence_id,
+                  t->sentence);
+    ck_assert_int_eq(t->status, strcmp(still[_i].sentence, "variance_right") == 0 ? LC_TEST_PASSED : LC_TEST_FAILED);
+    ck_assert_msg(!strstr(t->sentence, "nan") && !strstr(t->sentence, "inf "), "%s", t->sentence);
+}
+END_TEST
+
+/* Every file there is in the table. */
+START_TEST(test_fair_all_learnt)
+{
+    int count = 0;
+    DIR *folder = opendir("verify/tests/cheats/learnt");
+    ck_assert_ptr_nonnull(folder);
+    for (struct dirent *entry = readdir(folder); entry; entry = readdir(folder))
+        count += strstr(entry->d_name, ".c") != NULL;
+    closedir(folder);
+    ck_assert_int_eq(count, LEARNT);
+}
+END_TEST
+
 Suite *lc_suite_grade_fair(void)
 {
     Suite *suite = suite_create("grade_fair");
@@ -171,6 +277,9 @@ Suite *lc_suite_grade_fair(void)
     tcase_add_loop_test(tcase, test_fair_huge, 0, sizeof huge / sizeof huge[0]);
     tcase_add_test(tcase, test_fair_fault_is_written);
     tcase_add_test(tcase, test_fair_claims_less);
+    tcase_add_test(tcase, test_fair_all_learnt);
+    tcase_add_loop_test(tcase, test_fair_still, 0, sizeof still / sizeof still[0]);
+    tcase_add_loop_test(tcase, test_fair_learnt, 0, LEARNT);
     suite_add_tcase(suite, tcase);
     return suite;
 }
