@@ -268,6 +268,39 @@ START_TEST(test_fair_all_learnt)
 }
 END_TEST
 
+/* ---- some points ------------------------------------------------------------------------------------------------------ */
+
+/* A test that earns some of its points is partial, and what requires it is judged, unless it was shown wrong: the row says that, not the
+ * interval of the whole image. An interval may miss 1 where nothing is shown yet, and hold it where one tile is wrong. */
+static const struct {
+    lc_row row;
+    double share;
+    lc_test_status status;
+} some[] = {
+    {{.verdict = LC_ROW_UNDECIDED, .low = 1.001, .high = 1.015}, 0.7, LC_TEST_PARTIAL},
+    {{.verdict = LC_ROW_UNDECIDED, .low = 0.93, .high = 0.99}, 0.4, LC_TEST_PARTIAL},
+    {{.verdict = LC_ROW_UNDECIDED, .low = 0.99, .high = 1.015}, 0.7, LC_TEST_PARTIAL},
+    {{.verdict = LC_ROW_FAIL, .low = 0.99, .high = 1.01, .tile_width = 4, .tile_ratio = 1.03}, 0.3, LC_TEST_FAILED},
+    {{.verdict = LC_ROW_FAIL, .low = 1.02, .high = 1.03}, 0.3, LC_TEST_FAILED},
+    {{.verdict = LC_ROW_FAIL, .low = 1.2, .high = 1.3}, 0, LC_TEST_FAILED},
+    {{.verdict = LC_ROW_UNDECIDED, .low = 0.5, .high = 1.5}, 0, LC_TEST_FAILED},
+    {{.verdict = LC_ROW_PASS, .low = 1.001, .high = 1.003}, 1, LC_TEST_PASSED},
+};
+
+START_TEST(test_fair_some_points)
+{
+    lc_row row = some[_i].row;
+    lc_test_result t = {.most_points = 2, .measured = {.low = row.low, .high = row.high}};
+    double shown;
+    row.margin = 0.01;
+    row.samples = 256;
+    ck_assert_double_eq(lc_grade_share(&shown, &row), some[_i].share);
+    lc_test_settle(&t, some[_i].share);
+    ck_assert_double_eq(t.points, 2 * some[_i].share);
+    ck_assert_msg(t.status == some[_i].status, "%s", lc_test_status_name(t.status));
+}
+END_TEST
+
 Suite *lc_suite_grade_fair(void)
 {
     Suite *suite = suite_create("grade_fair");
@@ -277,6 +310,7 @@ Suite *lc_suite_grade_fair(void)
     tcase_add_loop_test(tcase, test_fair_huge, 0, sizeof huge / sizeof huge[0]);
     tcase_add_test(tcase, test_fair_fault_is_written);
     tcase_add_test(tcase, test_fair_claims_less);
+    tcase_add_loop_test(tcase, test_fair_some_points, 0, sizeof some / sizeof some[0]);
     tcase_add_test(tcase, test_fair_all_learnt);
     tcase_add_loop_test(tcase, test_fair_still, 0, sizeof still / sizeof still[0]);
     tcase_add_loop_test(tcase, test_fair_learnt, 0, LEARNT);
