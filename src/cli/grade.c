@@ -27,8 +27,6 @@ static lc_status write_result(const grade_arguments *a, const lc_grade_result *r
     const lc_format *format = lc_format_find(a->format);
     if (a->out)
         return lc_result_save(a->out, format, result, a->teacher, err);
-    if (result->done < result->test_count && !result->is_ungradable)
-        return LC_OK;
     return format->write(stdout, result, a->teacher, err);
 }
 

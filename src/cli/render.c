@@ -100,8 +100,8 @@ static lc_status render_one(const lc_scene *scene, const lc_estimator *estimator
     if (status == LC_OK && film->bad) {
         say_replay(replay, sizeof replay, a, scene_name, film);
         status = lc_fail(err, LC_WRONG,
-                         "%s: %llu samples are NaN, infinite or negative (written as 0), the first (%g, %g, %g) at "
-                         "pixel %d,%d; see it with `%s`",
+                         "%s: %llu samples are NaN, infinite, negative or above 1e60 (written as 0), the first "
+                         "(%g, %g, %g) at pixel %d,%d; see it with `%s`",
                          path, (unsigned long long)film->bad, film->bad_value[0], film->bad_value[1],
                          film->bad_value[2], film->bad_x, film->bad_y, replay);
     }

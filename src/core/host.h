@@ -188,6 +188,10 @@ uint32_t lc_arm(const char *name);
 
 enum { LC_BLOCK = 64 }; /* samples of a batch; films grow bit-exactly at multiples of it */
 
+/* A larger sample is bad, like an infinite one: what is made of samples goes up to the square of a variance, and the sum of those over an
+ * image must stay finite. */
+#define LC_LARGEST_SAMPLE 1e60
+
 typedef struct lc_moments {
     double mean;                 /* of the samples */
     double m2;                   /* sum of (x - mean)^2 */
@@ -224,7 +228,7 @@ typedef struct lc_film {
     int more_count;
     int shard, shards; /* shard of shards, 0 <= shard < shards <= LC_MAX_SHARDS; 0 of 1 is everything */
     uint64_t pasted[LC_MAX_SHARDS / 64]; /* bit i: shard i is here too; all 0 while `shard` is the only one */
-    uint64_t bad;                        /* NaN, infinite or negative samples: any is fatal to a check */
+    uint64_t bad;                        /* NaN, infinite, negative or huge samples: any is fatal to a check */
     int bad_x, bad_y;                    /* where the first (by pixel, then sample) was seen */
     uint64_t bad_sample;
     double bad_value[3];

@@ -30,7 +30,8 @@ typedef struct bad_samples {
 
 static int is_bad(lc_rgb c)
 {
-    return !(c.r >= 0 && c.g >= 0 && c.b >= 0 && c.r < INFINITY && c.g < INFINITY && c.b < INFINITY);
+    const double most = LC_LARGEST_SAMPLE;
+    return !(c.r >= 0 && c.g >= 0 && c.b >= 0 && c.r <= most && c.g <= most && c.b <= most);
 }
 
 /* LC_PACKET neighbouring samples of a pixel: their camera rays are made and traced together. */

@@ -39,7 +39,7 @@ static lc_status render(lc_film **out, const lc_claim *claim, const lc_estimator
 static void say_bad(lc_row *row, const lc_film *film)
 {
     row->verdict = LC_ROW_FAIL;
-    snprintf(row->reason, sizeof row->reason, "%s on %s: %llu samples are NaN, infinite or negative", film->estimator,
+    snprintf(row->reason, sizeof row->reason, "%s on %s: %llu samples are NaN, infinite, negative or above 1e60", film->estimator,
              film->scene, (unsigned long long)film->bad);
 }
 

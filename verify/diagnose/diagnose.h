@@ -47,7 +47,7 @@ typedef struct lc_diagnosis {
     int name_count;
     int is_certain;                              /* each other candidate was shown different */
     int candidates;
-    int has_bad;                                 /* NaN, infinite or negative samples */
+    int has_bad;                                 /* NaN, infinite, negative or huge samples */
     int repeats;                                 /* its samples depend on each other */
     lc_view_result views[LC_MOST_VIEWS];
     int view_count;

@@ -224,7 +224,7 @@ static void say_black(lc_diagnosis *d)
 void lc_diagnose_fingerprint(lc_diagnosis *d)
 {
     if (d->has_bad)
-        say(d, "some samples are NaN, infinite or negative");
+        say(d, "some samples are NaN, infinite, negative or above 1e60");
     if (d->repeats)
         say(d, "its samples depend on each other: the noise is wrong");
     if (!d->is_wrong || d->has_bad)

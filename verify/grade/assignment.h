@@ -13,7 +13,7 @@
 
 typedef enum lc_test_kind {
     LC_KIND_DESCRIPTOR, /* compiles, and claims the lobes, emitters and bounces that are asked for */
-    LC_KIND_FINITE,     /* a few samples over its scenes: none is NaN, infinite or negative; nothing crashes or hangs */
+    LC_KIND_FINITE,     /* a few samples over its scenes: none is NaN, infinite, negative or huge; nothing crashes or hangs */
     LC_KIND_CHECK,      /* all claims of one check of `lightcheck verify` about its scenes */
     LC_KIND_MEAN,       /* the mean of the reference estimator over its scenes */
     LC_KIND_VARIANCE    /* the variance of the reference: the method that was asked for */
@@ -56,7 +56,7 @@ typedef struct lc_assignment {
     int hint_after_attempts;         /* no hint before this many attempts */
     time_t due, published;           /* 0: never set */
     double late_per_day, late_most;  /* share of all points a begun day, and at most; 0: the course's own system does it */
-    double cpu_seconds;              /* for the file, all tests together; more is TLE */
+    double cpu_seconds;              /* for the file, all tests and workers together; more is TLE */
     char sentences[256];             /* a translated table (sentences.h, assignment_files.h); "": the program's */
     lc_test tests[LC_MOST_TESTS];
     int test_count;

@@ -19,7 +19,7 @@ enum {
 
 typedef struct lc_confinement {
     unsigned parts;       /* those wanted */
-    double cpu_seconds;   /* rounded up to whole ones */
+    double cpu_seconds;   /* of this process, rounded up to whole ones */
     uint64_t memory;      /* bytes of address space beyond what the process has already */
     uint64_t file_size;   /* of any file written [bytes] */
 } lc_confinement;

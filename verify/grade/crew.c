@@ -16,20 +16,28 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
+#include "verify/grade/watch.h"
+
 enum { MOST_WORKERS = 64, PIPE_SIZE = 1 << 18 };
 
-typedef enum killed_for { NOT_KILLED, COMPLETE, OUTPUT, TIME, OTHERS, CLOSED } killed_for;
+/* How often the workers' time is looked at [s], and how many looks in a row must find them asleep. */
+static const double LOOK = 0.02;
+enum { PATIENCE = 250 };
+
+typedef enum killed_for { NOT_KILLED, COMPLETE, OUTPUT, OTHERS, CLOSED } killed_for;
 
 typedef struct worker {
     pid_t pid;
     int samples, said; /* our ends of the pipes; -1: closed */
     killed_for reason;
-    int greeted;
+    int greeted, died_alone; /* before we killed it */
     lc_wire_greeting greeting;
+    double cpu; /* of the plug-in, when last looked at [s] */
     /* Where the next bytes go. */
     char *target;
     size_t wanted, got;
@@ -46,7 +54,8 @@ typedef struct crew {
     int count, request;
     uint64_t printed;
     size_t said_used;
-    double deadline;
+    double deadline, next_look;
+    int asleep; /* looks in a row that found nobody at work */
 } crew;
 
 static double now(void)
@@ -114,11 +123,14 @@ static int find_worker(char path[4096])
     return access(path, X_OK) == 0;
 }
 
+/* Nobody may open it anew: a worker could open our end of it, and wait there for what never comes. */
+static int open_pipe(int ends[2]) { return pipe2(ends, O_CLOEXEC) == 0 && fchmod(ends[0], 0) == 0; }
+
 static void start(crew *c, worker *w, const char *program)
 {
     int said[2] = {-1, -1}, samples[2] = {-1, -1};
     pid_t parent = getpid();
-    w->pid = pipe2(said, O_CLOEXEC) == 0 && pipe2(samples, O_CLOEXEC) == 0 ? fork() : -1;
+    w->pid = open_pipe(said) && open_pipe(samples) ? fork() : -1;
     if (w->pid == 0)
         become_worker(c, w->index, said[1], samples[1], program, parent);
     if (w->pid > 0) {
@@ -138,6 +150,59 @@ static void start(crew *c, worker *w, const char *program)
             close(rest[i]);
 }
 
+/* ---- time -------------------------------------------------------------------------------------------------------- */
+
+/* Of the plug-in alone: each worker has a start of its own, and how many workers there are must not decide. */
+static double plugin_cpu(const worker *w, double cpu) { return w->greeted ? fmax(0, cpu - w->greeting.cpu_seconds) : 0; }
+
+/* The limit is of all workers together, so that threads change only the time of the clock. */
+static void judge_cpu(crew *c, double cpu)
+{
+    double most = c->task->limits->cpu_seconds;
+    if (cpu > most)
+        judge(c, LC_JAIL_TLE, "it computed for %.3g s, and had %.3g s left", cpu, most);
+}
+
+/* 1 when a worker has computed since it was last looked at, or could. */
+static int is_at_work(worker *w)
+{
+    double cpu = plugin_cpu(w, lc_watch_cpu(w->pid));
+    int is_on = cpu > w->cpu;
+    w->cpu = fmax(cpu, w->cpu);
+    return is_on || !w->greeted || !lc_watch_sleeps(w->pid);
+}
+
+/* Looks at all workers, now and then; `quiet`: nothing has come from any of them. */
+static void look_at_time(crew *c, int quiet)
+{
+    double cpu = 0;
+    int at_work = !quiet;
+    if (now() < c->next_look)
+        return;
+    c->next_look = now() + LOOK;
+    for (int i = 0; i < c->count; ++i) {
+        worker *w = &c->workers[i];
+        if (w->samples >= 0 && is_at_work(w))
+            at_work = 1;
+        cpu += w->cpu;
+    }
+    judge_cpu(c, cpu);
+    c->asleep = at_work ? 0 : c->asleep + 1;
+    if (c->asleep >= PATIENCE)
+        judge(c, LC_JAIL_TLE, "it was stopped after %g s of waiting for what does not come", PATIENCE * LOOK);
+}
+
+/* The clock's time is no measure of a file: that of a machine with much to do runs away. A file that sleeps has been found before;
+ * without seccomp it may sleep a little, again and again, and that is not told from a machine that gives it nothing. */
+static void judge_clock(crew *c)
+{
+    double cpu = 0;
+    for (int i = 0; i < c->count; ++i)
+        cpu += c->workers[i].cpu;
+    judge(c, c->result->parts & LC_JAIL_SECCOMP ? LC_JAIL_IE : LC_JAIL_TLE, "it was stopped after %g s of the clock, of which it got %.3g s to compute in",
+          c->task->limits->wall_seconds, cpu);
+}
+
 /* ---- what comes -------------------------------------------------------------------------------------------------- */
 
 static void stop(worker *w, killed_for reason)
@@ -147,6 +212,20 @@ static void stop(worker *w, killed_for reason)
         kill(-w->pid, SIGKILL);
         kill(w->pid, SIGKILL); /* should it not have its group yet */
     }
+}
+
+/* A process that ends closes its pipes a moment before it is dead. One that lives on has closed them itself, and is killed by us; only when that
+ * is told apart does it mean something to have died of SIGKILL. */
+static int dies_alone(pid_t pid)
+{
+    const struct timespec pause = {0, 1000000};
+    for (int i = 0; i < 200; ++i) {
+        siginfo_t info = {0};
+        if (waitid(P_PID, (id_t)pid, &info, WEXITED | WNOHANG | WNOWAIT) != 0 || info.si_pid != 0)
+            return 1;
+        nanosleep(&pause, NULL);
+    }
+    return 0;
 }
 
 static void expect(worker *w, void *target, size_t wanted)
@@ -241,6 +320,7 @@ static void read_samples(crew *c, worker *w)
     if (n < 0 && (errno == EAGAIN || errno == EINTR))
         return;
     if (n <= 0) {
+        w->died_alone = dies_alone(w->pid);
         stop(w, CLOSED);
         end_pipe(&w->samples);
         return;
@@ -287,6 +367,7 @@ static void listen_to(crew *c)
     worker *of[2 * MOST_WORKERS];
     nfds_t count = 1;
     while (count > 0 && c->result->verdict.code == LC_JAIL_AC) {
+        int news = 0;
         count = 0;
         for (int i = 0; i < c->count; ++i) {
             worker *w = &c->workers[i];
@@ -298,13 +379,13 @@ static void listen_to(crew *c)
             polled[count++] = (struct pollfd){.fd = w->said, .events = POLLIN}; /* -1 is passed over */
         }
         double left = c->deadline - now();
-        if (count > 0 && left < 0) {
-            judge(c, LC_JAIL_TLE, "it was stopped after %g s without an end", c->task->limits->wall_seconds);
-            return;
-        }
-        if (count == 0 || poll(polled, count, (int)fmin(1000 * left + 1, 60000)) <= 0)
-            continue;
-        for (nfds_t i = 0; i < count; ++i) {
+        if (count > 0 && left < 0)
+            judge_clock(c);
+        if (count > 0)
+            news = poll(polled, count, (int)(1000 * LOOK));
+        if (count > 0)
+            look_at_time(c, news == 0);
+        for (nfds_t i = 0; i < count && news > 0; ++i) {
             if (polled[i].revents && (i & 1) == 0)
                 read_samples(c, of[i]);
             else if (polled[i].revents && of[i]->said >= 0)
@@ -331,34 +412,46 @@ static const char *name_of_signal(int number)
         return "it ran into an invalid instruction: a function without a return, perhaps";
     case SIGABRT:
         return "it aborted: a failed assertion, or a broken heap";
+    case SIGTRAP:
+        return "it ran into a trap: a function without a return, perhaps, or a breakpoint";
     case SIGSYS:
         return "it made a system call that no estimator needs: files, processes, network, waiting";
     default:
-        return NULL;
+        return "it ended itself by a signal";
     }
+}
+
+/* What other processes send, and a machine without memory. Under seccomp a file can send itself SIGABRT and no other signal; all that the kernel
+ * sends for what code does, rare ones like SIGTRAP too, is the file's own fault. Without seccomp any signal may be its own, and is: or it
+ * would be graded again for ever, and a wrong file had no 0. */
+static int is_from_outside(const worker *w, int number)
+{
+    int is_sent = number == SIGKILL || number == SIGTERM || number == SIGHUP || number == SIGINT || number == SIGQUIT;
+    return is_sent && (w->greeting.reached & LC_JAIL_SECCOMP);
 }
 
 static void judge_end(crew *c, const worker *w, int status, const struct rusage *use, double cpu)
 {
     const lc_jail_options *limits = c->task->limits;
-    if (w->reason == COMPLETE || w->reason == OUTPUT || w->reason == TIME || w->reason == OTHERS)
+    if (w->reason == COMPLETE || w->reason == OUTPUT || w->reason == OTHERS)
         return;
     int number = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
-    int ours = w->reason == CLOSED && number == SIGKILL; /* it only closed its pipe, or was about to end */
+    int ours = number == SIGKILL && !w->died_alone; /* it only closed its pipe */
     if (!w->greeted) {
         judge(c, LC_JAIL_IE, "a worker did not begin: %s %d", number ? "signal" : "exit status",
               number ? number : WEXITSTATUS(status));
-    } else if (number == SIGXCPU || (number && cpu >= 0.9 * ceil(limits->cpu_seconds))) { /* clocks differ, by up to 6% as seen */
-        judge(c, LC_JAIL_TLE, "it was stopped after %.3g s of computing", cpu);
+    } else if (number == SIGXCPU || (number == SIGKILL && cpu >= 0.9 * limits->cpu_seconds)) { /* clocks differ, by up to 6% as seen */
+        judge(c, LC_JAIL_TLE, "it computed for %.3g s, and had %.3g s left", cpu, limits->cpu_seconds);
     } else if (number && number != SIGSYS && (double)use->ru_maxrss * 1024 >= 0.75 * (double)limits->memory) {
         judge(c, LC_JAIL_MLE, "it died with its memory full: %llu MiB are allowed",
               (unsigned long long)(limits->memory >> 20));
-    } else if (name_of_signal(number)) {
-        judge(c, LC_JAIL_RTE, "%s (signal %d)", name_of_signal(number), number);
-    } else if (number && !ours) {
-        judge(c, LC_JAIL_IE, "a worker was ended from outside, by signal %d", number);
     } else if (ours) {
-        judge(c, LC_JAIL_IR, "it ended, or closed its output, before all samples were made");
+        judge(c, LC_JAIL_IR, "it closed its output before all samples were made");
+    } else if (is_from_outside(w, number)) {
+        judge(c, LC_JAIL_IE, "a worker was ended from outside, by signal %d%s", number,
+              number == SIGKILL ? ", as by a machine that has no memory left" : "");
+    } else if (number) {
+        judge(c, LC_JAIL_RTE, "%s (signal %d)", name_of_signal(number), number);
     } else {
         judge(c, LC_JAIL_IR, "it ended by itself, with exit status %d, before all samples were made",
               WEXITSTATUS(status));
@@ -385,9 +478,10 @@ static void finish(crew *c)
         end_pipe(&w->said);
         double cpu = (double)(use.ru_utime.tv_sec + use.ru_stime.tv_sec) +
                      1e-6 * (double)(use.ru_utime.tv_usec + use.ru_stime.tv_usec);
-        c->result->verdict.cpu_seconds += cpu;
-        judge_end(c, w, status, &use, cpu);
+        c->result->verdict.cpu_seconds += plugin_cpu(w, cpu);
+        judge_end(c, w, status, &use, plugin_cpu(w, cpu));
     }
+    judge_cpu(c, c->result->verdict.cpu_seconds); /* what was not looked at in time is too much all the same */
 }
 
 lc_status lc_crew_run(lc_crew_result *result, const lc_crew_task *task, lc_error *err)

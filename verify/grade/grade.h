@@ -42,7 +42,7 @@ lc_status lc_grade_plan(const lc_assignment *assignment, const lc_grade_options 
 
 /* Fills `out`, whatever the file does: a file that does not compile, a hang, a cheat are results, not errors. LC_OK then; lc_grade_status(out) has the
  * verdict. An error (LC_BAD_INPUT: no such file, scene or test; LC_FAULT) says that there is no result. One grading a process at a time; it
- * forks, so that the caller has no other threads running. Same file, assignment and seed: same points. */
+ * forks, so that the caller has no other threads running. Same file, assignment and seed: same points, unless it is at its limit of time. */
 lc_status lc_grade_file(lc_grade_result *out, const lc_assignment *assignment, const char *path,
                         const lc_grade_options *options, lc_error *err);
 

@@ -8,12 +8,11 @@
 
 #include "verify/grade/grading.h"
 
-/* The steps of points: how near to the expected value the mean was shown to be, in margins of the assignment; and what is shown
- * different, but by less than 5% in every part of the image. */
+/* The steps of points: how near to the expected value the mean was shown to be, in margins of the assignment. */
 static const struct {
     double margins, share;
 } steps[] = {{1, 1}, {2, 0.7}, {10, 0.4}};
-static const double NEAR = 0.05, NEAR_SHARE = 0.3;
+static const double NEAR = 0.05;
 
 double lc_grade_share(double *margin_shown, const lc_row *row)
 {
@@ -28,7 +27,7 @@ double lc_grade_share(double *margin_shown, const lc_row *row)
     if (row->verdict == LC_ROW_FAIL) {
         int is_near = off <= NEAR && (row->tile_width == 0 || fabs(row->tile_ratio - 1) <= NEAR);
         *margin_shown = is_near ? NEAR : NAN;
-        return is_near ? NEAR_SHARE : 0;
+        return is_near ? LC_NEAR_SHARE : 0;
     }
     for (size_t i = 1; i < sizeof steps / sizeof steps[0]; ++i)
         if (off <= steps[i].margins * row->margin) {

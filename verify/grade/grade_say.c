@@ -11,9 +11,7 @@ void lc_test_settle(lc_test_result *out, double share)
 {
     out->points = share * out->most_points;
     out->code = share >= 1 ? LC_JAIL_AC : LC_JAIL_WA;
-    out->status = share >= 1                                                ? LC_TEST_PASSED
-                  : share > 0 && !(out->measured.low > 1 || out->measured.high < 1) ? LC_TEST_PARTIAL
-                                                                            : LC_TEST_FAILED;
+    out->status = share >= 1 ? LC_TEST_PASSED : share > LC_NEAR_SHARE ? LC_TEST_PARTIAL : LC_TEST_FAILED;
 }
 
 void lc_test_say(lc_test_result *out, const lc_grading *g, const char *id, const lc_words *words)

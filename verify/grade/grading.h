@@ -52,6 +52,10 @@ lc_status lc_grade_variance(lc_grading *g, const lc_job *job, lc_test_result *ou
 /* The same of any kind, for an adapter; in grade_images.c. What images cannot tell counts for nothing: no points are asked for. */
 lc_status lc_grade_images(lc_grading *g, const lc_job *job, lc_test_result *out, lc_error *err);
 
+/* What is shown wrong, but by less than 5% in every part of the image, earns this share of the points; what is not shown wrong earns more, or
+ * nothing. */
+#define LC_NEAR_SHARE 0.3
+
 /* The share of its points that a decided row earns, and the margin that was shown for it. */
 double lc_grade_share(double *margin_shown, const lc_row *row);
 

@@ -31,7 +31,7 @@ const char *lc_jail_code_name(lc_jail_code code)
 
 void lc_jail_options_init(lc_jail_options *options)
 {
-    const lc_jail_options defaults = {120, 1200, 256 << 20, 64 << 10, LC_JAIL_ALL, 0};
+    const lc_jail_options defaults = {240, 3600, 256 << 20, 64 << 10, LC_JAIL_ALL, 0};
     *options = defaults;
 }
 
@@ -59,6 +59,12 @@ const char *lc_jail_level(const lc_jail *jail) { return jail->level; }
 
 /* ---- films ------------------------------------------------------------------------------------------------------- */
 
+/* The crew sums up and ends its workers; what the kernel does about one of them comes later, should nobody be there to look. */
+static lc_confinement confinement_of(const lc_jail_options *limits)
+{
+    return (lc_confinement){limits->parts, limits->cpu_seconds + 2, limits->memory, 0};
+}
+
 static lc_status fill(void *user, lc_film *film, const lc_scene *scene, const lc_render_options *options, lc_error *err)
 {
     lc_jail *jail = user;
@@ -73,12 +79,12 @@ static lc_status fill(void *user, lc_film *film, const lc_scene *scene, const lc
                          .workers = (int)fmax(1, fmin((double)cores, fmin(most, tiles))),
                          .film = film};
     task.request.task = LC_WIRE_RENDER;
-    task.request.confinement = (lc_confinement){jail->options.parts, limits.cpu_seconds, jail->options.memory, 0};
+    task.request.confinement = confinement_of(&limits);
     task.request.options = *options;
     task.request.width = film->width;
     task.request.height = film->height;
     lc_status status = lc_crew_run(&jail->last, &task, err);
-    jail->cpu_left -= jail->last.verdict.cpu_seconds / task.workers;
+    jail->cpu_left -= jail->last.verdict.cpu_seconds;
     hold(jail, jail->last.parts);
     if (status == LC_OK && options->progress)
         options->progress(options->user, 1.0);
@@ -139,8 +145,7 @@ static lc_status describe(lc_jail *jail, const char *path, lc_error *err)
     limits.cpu_seconds = fmin(limits.cpu_seconds, 5);
     lc_crew_task task = {.image = jail->image, .limits = &limits, .workers = 1, .description = &jail->description};
     task.request.task = LC_WIRE_DESCRIBE;
-    task.request.confinement =
-        (lc_confinement){jail->options.parts, limits.cpu_seconds, jail->options.memory, 0};
+    task.request.confinement = confinement_of(&limits);
     lc_error why = {""};
     lc_status status = lc_crew_run(&jail->last, &task, &why);
     hold(jail, jail->last.parts);

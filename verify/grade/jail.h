@@ -41,19 +41,19 @@ const char *lc_jail_code_name(lc_jail_code code);
 typedef struct lc_jail_verdict {
     lc_jail_code code;
     char text[512];     /* why, in a sentence for its author; "" for AC */
-    double cpu_seconds; /* that it took, all workers together */
+    double cpu_seconds; /* that the file took, all workers together; not what it takes to start them */
 } lc_jail_verdict;
 
 typedef struct lc_jail_options {
-    double cpu_seconds;    /* of a worker for all films together; workers run side by side */
-    double wall_seconds;   /* for one film: only a process that does not compute comes near it */
+    double cpu_seconds;    /* for all films and all workers together: how many run side by side decides nothing */
+    double wall_seconds;   /* of the clock, for one film. What is still at work then is IE: the machine gave it no time */
     uint64_t memory;       /* of a worker, beyond what it needs itself [bytes] */
     uint64_t output;       /* that one film may print [bytes] */
     unsigned parts;        /* of the jail that are wanted; what is not had is left out, but limits and one of seccomp and Landlock */
     int any_symbol;        /* 1: the file may name functions beyond lightcheck.h, math.h and string.h; they will not get it far */
 } lc_jail_options;
 
-/* 120 s, 20 minutes, 256 MiB, 64 KiB, all parts, no. */
+/* 240 s, an hour, 256 MiB, 64 KiB, all parts, no. */
 void lc_jail_options_init(lc_jail_options *options);
 
 typedef struct lc_jail lc_jail;

@@ -51,7 +51,7 @@ typedef struct lc_measured {
     uint64_t samples;      /* a pixel */
     uint64_t paths;        /* of the estimator under test, in all */
     lc_tile worst;
-    int bad_x, bad_y;      /* a NaN, infinite or negative sample: its pixel, -1: none */
+    int bad_x, bad_y;      /* a NaN, infinite, negative or huge sample: its pixel, -1: none */
     uint64_t bad_sample, bad_count;
     double bad_value[3];
 } lc_measured;

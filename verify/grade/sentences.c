@@ -17,9 +17,9 @@ static const lc_sentence table[] = {
     {"compiled", "it compiles, and claims what is asked for: {language}"},
     {"claims_less", "it does not claim {missing}, which this assignment asks for: see the descriptor at the end of your file"},
     /* kind finite */
-    {"finite", "no sample of {paths} was NaN, infinite or negative, over {scene}"},
-    {"bad_sample", "{count} samples are NaN, infinite or negative over {scene}: the first is ({red}, {green}, {blue}) at pixel {x},{y}, sample "
-                   "{sample}, seed {seed}"},
+    {"finite", "no sample of {paths} was NaN, infinite, negative or above 1e60, over {scene}"},
+    {"bad_sample", "{count} samples are NaN, infinite, negative or above 1e60 over {scene}: the first is ({red}, {green}, {blue}) at "
+                   "pixel {x},{y}, sample {sample}, seed {seed}"},
     /* means */
     {"right", "{scene}: measured {measured} of the light that is expected, between {low} and {high}; all points ask for 100% +- {margin}"},
     {"right_exactly", "{scene}: every pixel has exactly the light that is expected"},
@@ -46,6 +46,10 @@ static const lc_sentence table[] = {
                      "least {least}: is it that method?"},
     {"variance_open", "{scene}: a sample varies {measured} as much as one of the method that is asked for, between {low} and {high}: too "
                       "uncertain to tell"},
+    {"variance_wrong", "{scene}: noise counts of right samples only: the mean of these is {mean} of the light that is expected, shown wrong most "
+                       "clearly in the {tile}"},
+    {"variance_unshown", "{scene}: a sample varies {measured} as much as one of the method that is asked for, but the mean of these samples, {mean} "
+                         "of what is expected, is not shown right within {margin}"},
     /* how it ended */
     {"ended_RTE", "{scene}: it died: {reason}"},
     {"ended_TLE", "{scene}: it took too long: {reason}"},
@@ -62,7 +66,7 @@ static const lc_sentence table[] = {
     {"images_left_out", "left out: images of a renderer cannot tell"},
     /* words in others */
     {"word_tile", "{width} x {height} pixels at {x},{y}"},
-    {"word_bounces", "{count} bounces"},
+    {"word_bounces", "bounces up to {count}"},
     /* what is withheld */
     {"withheld", "scene, numbers and the command that reproduces this are not shown until {until}"},
     {"withheld_ever", "scene, numbers and the command that reproduces this are not shown: another seed draws another scene"},

@@ -48,6 +48,7 @@ uint64_t lc_wire_build(void)
     uint64_t hash = 1469598103934665603u; /* FNV-1a, 64 bits */
     const size_t sizes[] = {LC_ABI,
                             sizeof(lc_wire_request),
+                            sizeof(lc_wire_greeting),
                             sizeof(lc_wire_description),
                             sizeof(lc_material_desc),
                             sizeof(lc_shape_desc),

@@ -30,6 +30,7 @@ typedef struct lc_wire_greeting {
     uint64_t build;
     unsigned reached; /* the parts of the jail */
     int status;       /* an lc_status; else of what `error` says */
+    double cpu_seconds; /* that it took to get here: none of the plug-in's */
     char error[256];
 } lc_wire_greeting;
 

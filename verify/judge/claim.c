@@ -17,7 +17,7 @@ void lc_row_bad(lc_row *row, const lc_film *film, uint64_t seed)
 {
     row->verdict = LC_ROW_FAIL;
     snprintf(row->reason, sizeof row->reason,
-             "%s on %s: %llu samples are NaN, infinite or negative, the first (%g, %g, %g) at pixel %d,%d sample %llu "
+             "%s on %s: %llu samples are NaN, infinite, negative or above 1e60, the first (%g, %g, %g) at pixel %d,%d sample %llu "
              "seed %llu",
              film->estimator, film->scene, (unsigned long long)film->bad, film->bad_value[0], film->bad_value[1],
              film->bad_value[2], film->bad_x, film->bad_y, (unsigned long long)film->bad_sample,

@@ -7,8 +7,9 @@
 
 #include "verify/judge/judge_c.h"
 
-static lc_status compare(lc_row *row, const lc_film *a, const lc_film *b, int is_from_files, double margin, double false_fail,
-                         double false_pass, lc_error *err)
+/* Against `b` or, where that is NULL, against expected values. */
+static lc_status compare(lc_row *row, const lc_film *a, const lc_film *b, const lc_expected *expected, int is_from_files, double margin,
+                         double false_fail, double false_pass, lc_error *err)
 {
     lc_budget budget = {false_fail, false_pass, 1, 3, 1};
     lc_pyramid_plan plan;
@@ -17,7 +18,7 @@ static lc_status compare(lc_row *row, const lc_film *a, const lc_film *b, int is
         return lc_fail(err, LC_FAULT, "out of memory for the differences");
     lc_pyramid_plan_init(&plan, lc_budget_row_fail(&budget), lc_budget_row_pass(&budget));
     lc_look result;
-    lc_comparison comparison = {a, b, NULL, NULL, NULL, margin, 0, is_from_files};
+    lc_comparison comparison = {a, b, expected, NULL, NULL, margin, 0, is_from_files};
     lc_status status = lc_judge_look(&result, &comparison, field, &plan, err);
     free(field);
     if (status != LC_OK)
@@ -43,11 +44,28 @@ static lc_status compare(lc_row *row, const lc_film *a, const lc_film *b, int is
 lc_status lc_compare_films(lc_row *row, const lc_film *a, const lc_film *b, double margin, double false_fail,
                            double false_pass, lc_error *err)
 {
-    return compare(row, a, b, 0, margin, false_fail, false_pass, err);
+    return compare(row, a, b, NULL, 0, margin, false_fail, false_pass, err);
 }
 
 lc_status lc_compare_files(lc_row *row, const lc_film *a, const lc_film *b, double margin, double false_fail,
                            double false_pass, lc_error *err)
 {
-    return compare(row, a, b, 1, margin, false_fail, false_pass, err);
+    return compare(row, a, b, NULL, 1, margin, false_fail, false_pass, err);
+}
+
+lc_status lc_compare_values(lc_row *row, const lc_film *a, const double *rgb, double margin, double false_fail,
+                            double false_pass, lc_error *err)
+{
+    lc_expected expected = {a->width, a->height, (double *)rgb, NULL};
+    return compare(row, a, NULL, &expected, 0, margin, false_fail, false_pass, err);
+}
+
+int lc_film_depends(const lc_film *film, uint64_t size, double alpha)
+{
+    for (int c = 0; c < 3; ++c) {
+        lc_batches batches = lc_batches_of_size(film, c, size);
+        if (lc_batches_depend(&batches, alpha / 3))
+            return 1;
+    }
+    return 0;
 }

@@ -111,5 +111,10 @@ lc_status lc_compare_films(lc_row *row, const lc_film *a, const lc_film *b, doub
 /* The same of films that were read from files, whose means were rounded to float: a difference that rounding explains is none. */
 lc_status lc_compare_files(lc_row *row, const lc_film *a, const lc_film *b, double margin, double false_fail,
                            double false_pass, lc_error *err);
+/* The same of one film and of values without error, R G B of each pixel, row by row. */
+lc_status lc_compare_values(lc_row *row, const lc_film *a, const double *rgb, double margin, double false_fail,
+                            double false_pass, lc_error *err);
+/* 1 when samples of a film, in batches of `size`, are shown to depend on each other in some channel, at the level alpha. */
+int lc_film_depends(const lc_film *film, uint64_t size, double alpha);
 
 #endif

@@ -108,6 +108,8 @@ typedef struct lc_batches {
  * v)^2 / sum(v^2 / (b - 1)), and with n - b for W. Pixels with b < 2 or without variance are left out; none left: NaN.
  */
 lc_batches lc_batches_of_film(const lc_film *film, int channel);
+/* The same of batches of `size` samples: of a sum of films, each of which is one. */
+lc_batches lc_batches_of_size(const lc_film *film, int channel, uint64_t size);
 
 /* 1 when samples are shown to depend on each other, at level alpha: p <= alpha^2, since the law is F's to its second
  * moment only, and at least 100 degrees of freedom between, so that no few pixels rule. Generators that are shared or

@@ -46,7 +46,7 @@ lc_ratio lc_variance_ratio(const lc_spread *a, const lc_spread *b, double alpha)
     return r;
 }
 
-lc_batches lc_batches_of_film(const lc_film *film, int channel)
+lc_batches lc_batches_of_size(const lc_film *film, int channel, uint64_t size)
 {
     size_t count = (size_t)film->width * (size_t)film->height;
     double between = 0, within = 0, total = 0, squares[2] = {0, 0};
@@ -54,10 +54,10 @@ lc_batches lc_batches_of_film(const lc_film *film, int channel)
     for (size_t i = 0; i < count; ++i) {
         const lc_pixel *p = &film->pixels[i];
         const lc_moments *m = &p->c[channel];
-        if (p->batches < 2 || p->n != p->batches * LC_BLOCK || !(m->m2 > 0))
+        if (p->batches < 2 || p->n != p->batches * size || !(m->m2 > 0))
             continue;
         double n = (double)p->n, b = (double)p->batches, v = m->m2 / (n - 1);
-        double among = LC_BLOCK * m->batch_m2;
+        double among = (double)size * m->batch_m2;
         between += among / (b - 1);
         within += fmax(0, m->m2 - among) / (n - b); /* rounding may take it below 0 */
         total += v;
@@ -73,6 +73,8 @@ lc_batches lc_batches_of_film(const lc_film *film, int channel)
     out.log_p = two_sided_log_p(out.ratio, out.df[0], out.df[1]);
     return out;
 }
+
+lc_batches lc_batches_of_film(const lc_film *film, int channel) { return lc_batches_of_size(film, channel, LC_BLOCK); }
 
 int lc_batches_depend(const lc_batches *b, double alpha)
 {

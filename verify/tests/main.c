@@ -25,6 +25,7 @@ static const struct {
     {"verify", lc_suite_verify},
     {"grade", lc_suite_grade},
     {"grade_again", lc_suite_grade_again},
+    {"grade_fair", lc_suite_grade_fair},
     {"pov_sample", lc_suite_pov_sample},
     {"povray", lc_suite_povray},
     {"cli", lc_suite_cli},

@@ -5,6 +5,7 @@
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,6 +13,7 @@
 #include <sys/prctl.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "estimators/registry.h"
@@ -259,6 +261,8 @@ static const struct {
     {"become_root", LC_JAIL_RTE},     {"giant_object", LC_JAIL_CE},        {"giant_messages", LC_JAIL_CE},
     {"include_itself", LC_JAIL_CE},   {"bad_descriptor", LC_JAIL_RTE},     {"long_name", LC_JAIL_CE},
     {"not_a_number", LC_JAIL_AC},     {"constant", LC_JAIL_AC},
+    {"huge", LC_JAIL_AC},             {"trap", LC_JAIL_RTE},               {"trap_in_constructor", LC_JAIL_RTE},
+    {"trap_flag", LC_JAIL_RTE},       {"wait_for_itself", LC_JAIL_AC},
 };
 enum { CHEATS = sizeof cheats / sizeof cheats[0] };
 
@@ -474,6 +478,126 @@ START_TEST(test_jail_levels)
 }
 END_TEST
 
+/* ---- signals from outside -------------------------------------------------------------------------------------------- */
+
+/* The worker of `parent`: its child that is not this process; 0 where there is none yet. */
+static pid_t worker_of(pid_t parent)
+{
+    char path[64];
+    int child = 0;
+    snprintf(path, sizeof path, "/proc/%d/task/%d/children", (int)parent, (int)parent);
+    FILE *file = fopen(path, "r");
+    ck_assert_ptr_nonnull(file);
+    while (fscanf(file, "%d", &child) == 1 && child == (int)getpid())
+        child = 0;
+    fclose(file);
+    return child;
+}
+
+/* In a process of its own: kills the worker of `parent` once it computes. */
+static void strike(pid_t parent, int number)
+{
+    const struct timespec pause = {0, 700000000};
+    pid_t worker = 0;
+    while (worker == 0)
+        worker = worker_of(parent);
+    nanosleep(&pause, NULL);
+    kill(worker, number);
+    _exit(0);
+}
+
+/* Whoever kills a worker, as a machine without memory does, is not the file; a file under seccomp cannot do that to itself. Without
+ * seccomp it can, so that nothing is believed there. */
+START_TEST(test_jail_killed_from_outside)
+{
+    static const struct {
+        int number;
+        unsigned without;
+        lc_jail_code code;
+    } blows[] = {{SIGKILL, 0, LC_JAIL_IE}, {SIGTERM, 0, LC_JAIL_IE}, {SIGHUP, 0, LC_JAIL_IE}, {SIGSTOP, 0, LC_JAIL_IE},
+                 {SIGKILL, LC_JAIL_SECCOMP, LC_JAIL_RTE}};
+    lc_scene *scene = load("plane_rectangle");
+    lc_film *film = make_film(8, 8);
+    lc_render_options o = {.max_bounces = 1, .count = 1, .threads = 1};
+    lc_error err = {""};
+    for (size_t i = 0; i < sizeof blows / sizeof blows[0]; ++i) {
+        lc_jail *jail;
+        lc_jail_options options;
+        lc_jail_options_init(&options);
+        options.parts &= ~blows[i].without;
+        options.cpu_seconds = 20;
+        options.wall_seconds = blows[i].number == SIGSTOP ? 7 : 600; /* longer than any patience with one that sleeps */
+        ck_assert_int_eq(lc_jail_open(&jail, "verify/tests/cheats/loop.c", &options, NULL, &err), LC_OK);
+        pid_t parent = getpid(), killer = fork();
+        if (killer == 0)
+            strike(parent, blows[i].number);
+        lc_status status = lc_render(film, scene, lc_jail_estimator(jail), &o, &err);
+        ck_assert_int_eq(waitpid(killer, NULL, 0), killer);
+        ck_assert_msg(lc_jail_last(jail)->code == blows[i].code, "signal %d: %s", blows[i].number, err.text);
+        ck_assert_int_eq(status, blows[i].code == LC_JAIL_IE ? LC_FAULT : LC_WRONG);
+        lc_jail_close(jail);
+    }
+    lc_film_free(film);
+    lc_scene_free(scene);
+    check_clean("killed");
+}
+END_TEST
+
+/* Without seccomp a file can sleep: it is told from one that gets no processor, long before the clock is at its limit. */
+START_TEST(test_jail_sleeps)
+{
+    lc_jail *jail;
+    lc_jail_options options;
+    lc_error err = {""};
+    lc_scene *scene = load("plane_rectangle");
+    lc_film *film = make_film(16, 16);
+    lc_render_options o = {.max_bounces = 1, .count = 1, .threads = 3};
+    lc_jail_options_init(&options);
+    options.parts &= ~(unsigned)LC_JAIL_SECCOMP;
+    options.any_symbol = 1;
+    ck_assert_int_eq(lc_jail_open(&jail, "verify/tests/cheats/sleep.c", &options, NULL, &err), LC_OK);
+    ck_assert_int_eq(lc_render(film, scene, lc_jail_estimator(jail), &o, &err), LC_WRONG);
+    ck_assert_int_eq(lc_jail_last(jail)->code, LC_JAIL_TLE);
+    ck_assert_msg(strstr(err.text, "of waiting for what does not come"), "%s", err.text);
+    ck_assert_double_lt(lc_jail_last(jail)->cpu_seconds, 1);
+    lc_jail_close(jail);
+    lc_film_free(film);
+    lc_scene_free(scene);
+    check_clean("sleeps");
+}
+END_TEST
+
+/* Workers side by side have one limit of time together, and what it takes to start them is not the file's. */
+START_TEST(test_jail_time_is_of_all)
+{
+    static const int workers[] = {1, 2, 8};
+    char path[128];
+    double first = 0;
+    lc_error err = {""};
+    lc_scene *scene = load("cornell");
+    snprintf(path, sizeof path, "%s/kept.c", folder);
+    write_source(path, PLUGIN("for (volatile int i = 0; i < 20000; ++i) {}\n"));
+    for (int i = 0; i < 6; ++i) { /* once with time enough, once with less than it takes */
+        lc_jail *jail = open_honest(path);
+        lc_film *film = make_film(64, 64);
+        lc_render_options o = {.max_bounces = 1, .count = 8, .threads = workers[i % 3]};
+        lc_jail_set_cpu(jail, i < 3 ? 100 : 0.6 * first);
+        lc_status status = lc_render(film, scene, lc_jail_estimator(jail), &o, &err);
+        double cpu = lc_jail_last(jail)->cpu_seconds;
+        if (i == 0)
+            first = cpu;
+        ck_assert_msg(status == (i < 3 ? LC_OK : LC_WRONG), "%d workers: %s", o.threads, err.text);
+        ck_assert_int_eq(lc_jail_last(jail)->code, i < 3 ? LC_JAIL_AC : LC_JAIL_TLE);
+        ck_assert_msg(i >= 3 || fabs(cpu / first - 1) < 0.5, "%d workers: %g s, one: %g s", o.threads, cpu, first);
+        ck_assert_double_eq_tol(lc_jail_cpu_left(jail), (i < 3 ? 100 : 0.6 * first) - cpu, 1e-9);
+        lc_jail_close(jail);
+        lc_film_free(film);
+    }
+    lc_scene_free(scene);
+    check_clean("time");
+}
+END_TEST
+
 /* ---- the program --------------------------------------------------------------------------------------------------- */
 
 static int run(char *said, size_t size, const char *arguments)
@@ -541,6 +665,9 @@ Suite *lc_suite_jail(void)
     tcase_add_test(tcase, test_jail_links);
     tcase_add_test(tcase, test_jail_walls);
     tcase_add_test(tcase, test_jail_levels);
+    tcase_add_test(tcase, test_jail_killed_from_outside);
+    tcase_add_test(tcase, test_jail_sleeps);
+    tcase_add_test(tcase, test_jail_time_is_of_all);
     tcase_add_test(tcase, test_jail_verify);
     tcase_add_test(tcase, test_jail_no_worker);
     tcase_add_test(tcase, test_jail_cheats);

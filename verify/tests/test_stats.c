@@ -275,6 +275,8 @@ START_TEST(batches_show_repeated_numbers)
     ck_assert(r.ratio > 0.5 && r.ratio < 2 && r.log_p > log(1e-3));
     ck_assert(r.pixels == PIXELS && fabs(r.df[0] - PIXELS * (BATCHES - 1)) < 5);
     ck_assert(isnan(lc_batches_of_film(&film, 1).log_p)); /* black: no variance */
+    ck_assert_double_eq(lc_batches_of_size(&film, 0, LC_BLOCK).log_p, r.log_p);
+    ck_assert(isnan(lc_batches_of_size(&film, 0, LC_BLOCK / 2).log_p)); /* its batches are others */
 }
 END_TEST
 

@@ -56,6 +56,7 @@ Suite *lc_suite_formats(void);
 Suite *lc_suite_assignment(void);
 Suite *lc_suite_grade(void);
 Suite *lc_suite_grade_again(void);
+Suite *lc_suite_grade_fair(void);
 Suite *lc_suite_class(void);
 Suite *lc_suite_rehearse(void);
 Suite *lc_suite_sensitivity(void);
