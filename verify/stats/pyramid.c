@@ -29,6 +29,8 @@ typedef struct visit_state {
     double pass_z, pass_weight;
     int worst_count;
     level_state level[LC_LEVELS];
+    lc_student even;    /* the image as it would be with all pixels equally bright */
+    double even_pixels; /* that have a brightness */
 } visit_state;
 
 void lc_pyramid_plan_init(lc_pyramid_plan *plan, double alpha_fail, double alpha_pass)
@@ -104,18 +106,59 @@ static double z_below(double log_p)
  * at least 0.79 whatever s, which makes p wrong by less than a fifth. */
 static const double ENOUGH_EVENTS = 100;
 
-/* Raises a tile's skewness to that of an average tile of its size in the tiles around it, where it could have missed what makes theirs up;
- * to the image's always. */
+/* To that of an average one of so many `parts`, where a part could have missed what makes it up, or `always`. */
+static void raise_skew(lc_student *student, const lc_student *around, double parts, int always)
+{
+    for (int side = 0; side < 2 && around->testable; ++side)
+        if (always || around->events[side] < ENOUGH_EVENTS * parts)
+            student->skew[side] = fmax(student->skew[side], around->skew[side] * sqrt(parts));
+}
+
+/* Raises a tile's skewness to that of an average tile of its size in the tiles around it, and in the image. Its moments as they are forget
+ * dim parts, those of the even image forget parts that vary little. */
 static void guard(const visit_state *state, int l, double pixels, lc_student *student)
 {
     int top = state->out->levels - 1;
-    for (int a = l + 1; a <= top && state->plan->guard == LC_GUARD_POOLED; ++a) {
-        const lc_student *around = &state->level[a].around;
-        double parts = state->level[a].pixels / pixels;
-        for (int side = 0; side < 2 && around->testable; ++side)
-            if (a == top || around->events[side] < ENOUGH_EVENTS * parts)
-                student->skew[side] = fmax(student->skew[side], around->skew[side] * sqrt(parts));
+    if (state->plan->guard != LC_GUARD_POOLED || l == top)
+        return;
+    for (int a = l + 1; a <= top; ++a)
+        raise_skew(student, &state->level[a].around, state->level[a].pixels / pixels, a == top);
+    raise_skew(student, &state->even, fmax(1, state->even_pixels / pixels), 0);
+}
+
+/* A pixel in units of what is expected there. */
+static lc_estimate even_out(const lc_estimate *e)
+{
+    lc_estimate out = *e;
+    double unit = e->expected / e->pixels;
+    out.difference /= unit;
+    out.expected /= unit;
+    out.tolerance /= unit;
+    for (int i = 0; i < 2; ++i) {
+        lc_arm_sums *arm = &out.arm[i];
+        arm->variance /= pow(unit, 2);
+        arm->variance2 /= pow(unit, 4);
+        arm->third /= pow(unit, 3);
+        arm->doubt /= pow(unit, 3);
+        for (int bright = 0; bright < 2; ++bright) {
+            arm->cubes[bright] /= pow(unit, 3);
+            arm->sixths[bright] /= pow(unit, 6);
+        }
     }
+    return out;
+}
+
+static void even_image(visit_state *state)
+{
+    lc_estimate sum = lc_estimate_zero();
+    for (size_t i = 0; i < (size_t)state->width * (size_t)state->height; ++i)
+        if (state->field[i].pixels == 1 && state->field[i].expected > 0) {
+            lc_estimate e = even_out(&state->field[i]);
+            if (is_sound(&e)) /* nearly black pixels may be beyond all numbers */
+                lc_estimate_add(&sum, &e);
+        }
+    state->even = lc_estimate_student(&sum);
+    state->even_pixels = sum.pixels;
 }
 
 static int side_of(const lc_student *s) { return s->difference < 0 ? LC_LOW : LC_HIGH; }
@@ -323,6 +366,7 @@ lc_status lc_pyramid_judge(lc_pyramid *out, const lc_estimate *field, int width,
     state.plan = plan;
     state.out = out;
     prepare(&state);
+    even_image(&state);
     visit(&state, out->levels - 1, 0, 0);
     conclude(&state);
     return LC_OK;

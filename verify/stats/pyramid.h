@@ -61,8 +61,8 @@ enum { LC_LEVELS = 15 }; /* 2^14 = LC_MAX_SIZE */
 /* Whose skewness a test is guarded by. OWN: the tile's. POOLED: also that of an average tile of its size in the image, and
  * in each of the larger tiles around it that it may have missed the rare samples of, because a tile whose rare bright
  * samples were never hit has a small mean, a small variance AND a small skewness; the tiles that were hit know better. Of
- * each, since in the image's sums the variance of a bright part would hide the rare samples of a dim one; and not where so
- * many samples make up the skewness of the larger tile that none of its parts can have missed them. POOLED is the rule;
+ * each, and of the image with all pixels equally bright, since in its sums the variance of a bright part would hide the rare
+ * samples of a dim one; and not where so many samples make up the skewness of the larger tile that none of its parts can have missed them. POOLED is the rule;
  * OWN is for fields whose tiles have nothing in common. */
 typedef enum lc_guard { LC_GUARD_POOLED, LC_GUARD_OWN } lc_guard;
 

@@ -30,9 +30,10 @@ mutant measured_margin_is_exact $pyramid 's/state->plan->relative > 0 ?/0 ?/'
 
 # Heavy tails.
 mutant guard_switched_off verify/stats/estimate.h 's/#define LC_SKEW_LIMIT 2.08/#define LC_SKEW_LIMIT 1e30/'
-mutant guard_of_the_image_alone $pyramid 's/if (a == top || around->events\[side\] < ENOUGH_EVENTS \* parts)/if (a == top)/'
-mutant guard_counts_nothing $pyramid 's/if (a == top || around->events\[side\] < ENOUGH_EVENTS \* parts)/if (1)/'
-mutant guard_of_the_tile_alone $pyramid 's/if (state->plan->guard == LC_GUARD_POOLED)/if (0)/'
+mutant guard_of_the_image_alone $pyramid 's/raise_skew(student, &state->level\[a\].around, state->level\[a\].pixels \/ pixels, a == top);/if (a == top) raise_skew(student, \&state->level[a].around, state->level[a].pixels \/ pixels, 1);/'
+mutant guard_without_the_even_image $pyramid '/raise_skew(student, &state->even, /d'
+mutant guard_counts_nothing $pyramid 's/if (always || around->events\[side\] < ENOUGH_EVENTS \* parts)/if (1)/'
+mutant guard_of_the_tile_alone $pyramid 's/if (state->plan->guard != LC_GUARD_POOLED || l == top)/if (1)/'
 mutant tails_not_corrected $estimate 's/return s->skew\[side\] \* lc_skew_weight(alpha) \/ 3 + log(LC_RESERVE);/return 0;/'
 mutant skewness_of_the_wrong_side $estimate 's/double third = i == 0 ? arm->third : -arm->third;/double third = i == 1 ? arm->third : -arm->third;/'
 mutant skewness_cancels_between_arms $estimate 's/spoil\[LC_LOW\] += fmax(third, 0)/spoil[LC_LOW] += third/'

@@ -274,20 +274,57 @@ static lc_estimate rare(double n, double scale, double calm, double rate, double
     return lc_estimate_one(&p, 1, 0, scale, 0);
 }
 
-/* The right half is 100 times as dark, and a tenth of its light comes from one sample in 1000. The variance of the bright half hides that
- * from the image's moments: the larger tiles around a tile know. */
+/* The right half is 100 times as dark and much calmer, but for one sample in 1000. The variance of the bright half hides that from the
+ * image's moments, however they are weighed: the larger tiles around a tile know. */
 START_TEST(guard_knows_of_rare_samples_in_the_dark)
 {
     uint64_t state = 23;
     for (int trial = 0; trial < 20; ++trial) {
         lc_pyramid_plan plan;
         for (int i = 0; i < 64 * 64; ++i)
-            field[i] = i % 64 < 32 ? rare(256, 1, 0.6, 1e-12, 1, &state) : rare(256, 0.01, 0.54, 1e-3, 100, &state);
+            field[i] = i % 64 < 32 ? rare(256, 1, 0.6, 1e-12, 1, &state) : rare(256, 0.01, 0.005, 1e-3, 1, &state);
         lc_pyramid_plan_init(&plan, 1e-6, 1e-6);
         lc_pyramid out = judge(64, 64, &plan);
         ck_assert_msg(out.verdict != LC_FAIL, "trial %d: %dx%d pixels at %d,%d", trial, out.worst.width, out.worst.height,
                       out.worst.x, out.worst.y);
     }
+}
+END_TEST
+
+/* The same where each dark tile lies among bright ones, and meets no bright sample at all in every twentieth trial: only the other dark
+ * tiles know, and what contains several of them contains as many bright ones. */
+START_TEST(guard_knows_of_rare_samples_elsewhere_in_the_dark)
+{
+    uint64_t state = 29;
+    for (int trial = 0; trial < 20; ++trial) {
+        lc_pyramid_plan plan;
+        for (int i = 0; i < 32 * 32; ++i)
+            field[i] = (i % 32 / 8 + i / 256) % 2 ? rare(256, 1, 0.6, 1e-12, 1, &state) : rare(256, 0.01, 0.54, 1.8e-4, 555, &state);
+        lc_pyramid_plan_init(&plan, 1e-6, 1e-6);
+        lc_pyramid out = judge(32, 32, &plan);
+        ck_assert_msg(out.verdict != LC_FAIL, "trial %d: %dx%d pixels at %d,%d", trial, out.worst.width, out.worst.height,
+                      out.worst.x, out.worst.y);
+    }
+}
+END_TEST
+
+/* A tile that is 5% too dark is found beside tiles of skewed samples: so many of them that it cannot have missed them by chance. */
+START_TEST(skewed_neighbours_hide_nothing)
+{
+    lc_pyramid_plan plan;
+    uint64_t state = 31;
+    const double n = 1024;
+    for (int i = 0; i < 32 * 32; ++i) {
+        int x = i % 32 / 8, y = i / 256, is_wrong = x == 1 && y == 1, is_skewed = x < 2 && y < 2 && !is_wrong;
+        lc_pixel p = symmetric(n, (is_wrong ? 0.95 : 1) + normal(&state) / sqrt(n), 1);
+        p.c[0].m3 = is_skewed ? 6 * n : 0;
+        p.c[0].max = 5;
+        field[i] = lc_estimate_one(&p, 1, 0, 1, 0);
+    }
+    lc_pyramid_plan_init(&plan, 1e-6, 1e-6);
+    lc_pyramid out = judge(32, 32, &plan);
+    ck_assert_int_eq(out.verdict, LC_FAIL);
+    ck_assert_msg(out.worst.level == 3 && out.worst.x == 8 && out.worst.y == 8, "level %d, %d,%d", out.worst.level, out.worst.x, out.worst.y);
 }
 END_TEST
 
@@ -433,6 +470,8 @@ Suite *lc_suite_stats_pyramid(void)
     tcase_add_test(cases, false_fail_rate_is_held);
     tcase_add_test(cases, pooled_guard_knows_of_rare_samples);
     tcase_add_test(cases, guard_knows_of_rare_samples_in_the_dark);
+    tcase_add_test(cases, skewed_neighbours_hide_nothing);
+    tcase_add_test(cases, guard_knows_of_rare_samples_elsewhere_in_the_dark);
     tcase_add_test(cases, still_pixels_do_not_test_alone);
     tcase_add_test(cases, few_samples_do_not_test);
     tcase_add_test(cases, pass_needs_every_declared_level);
