@@ -6,7 +6,7 @@
 set -eu
 cd "$(dirname "$0")/../.."
 what=judge
-judge='judge_mutants stats_estimate stats_pyramid stats_tiles stats film' shown='pictures/core exr/films verify/words'
+judge='judge_mutants stats_estimate stats_pyramid stats film' shown='pictures/core exr/films verify/words'
 suites="$judge $shown"
 . verify/tests/wrong_copy.sh
 suites=$judge
