@@ -76,12 +76,17 @@ sed 's/weight \*= fmax/weight = fmax/' "$handins/all_lights.c" >"$folder/wrong.c
 sed 's/lc_black();/lc_black() this is no C;/' "$handins/all_lights.c" >"$folder/no_c.c"
 sed 's/lc_rgb sum = lc_black();/for (volatile int i = 0; i < 1; i += 0) {}\n    &/' "$handins/all_lights.c" >"$folder/hangs.c"
 
-most=$(sed -n 's/.*"points": *\([0-9.]*\).*/\1/p' "$base/source/assignment.json" | awk '{ sum += $1 } END { print sum }')
+most=$(sed -n 's/.*"points": *\([0-9.]*\).*/\1/p' "$base/source/assignment/light_direct.json" | awk '{ sum += $1 } END { print sum }')
 grade 1 "$folder/right.c"
 expect right "^  \"score\": $most\\(\\.0\\)\\?,\$" "$results"
 expect right '"status": "passed"' "$results"
 expect right '"attempt": 1,\?$' "$results"
+seed=$(sed -n 's/^    "seed": "\([0-9]*\)",*$/\1/p' "$results")
+grade 1 "$folder/right.c" # the same hand-in again: the same scenes, by a seed that is nobody's guess
+expect right "^    \"seed\": \"$seed\",\?$" "$results"
+case $seed in '' | 1) expect 'seed of its own' '^a seed that was drawn$' "$results" ;; esac
 grade 4 "$folder/wrong.c"
+expect wrong "Again: lightcheck grade wrong.c -a light_direct --seed $seed --only\|again: lightcheck grade wrong.c -a light_direct --seed $seed --only" "$results"
 expect wrong '"code": "WA"' "$results"
 expect wrong '"status": "failed"' "$results"
 expect wrong '"attempt": 4,\?$' "$results"

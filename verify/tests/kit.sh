@@ -77,7 +77,7 @@ grep -q '^1 von 1 Punkten' "$folder/out" || wrong "not in the course's words: $(
 if command -v zip >/dev/null && command -v unzip >/dev/null; then
     sh verify/grade/gradescope/make_zip.sh "$program" "$folder/own/own.json" "$folder/own.zip"
     unzip -q "$folder/own.zip" -x 'lightcheck/*' -d "$folder/source"
-    works 0 grade all_lights.c -a "$folder/source/assignment.json"
+    works 0 grade all_lights.c -a "$folder/source/assignment/own.json"
     grep -q '^3 von 3 Punkten' "$folder/out" || wrong "of the autograder: $(tail -n 1 "$folder/out")"
     rm -r "$folder/source"
 else

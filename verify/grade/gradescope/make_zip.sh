@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # usage: make_zip.sh PROGRAM ASSIGNMENT|FILE.json OUT.zip
-# An autograder for Gradescope: setup.sh, run_autograder, assignment.json and the files that it names at its root, and what lightcheck is
+# An autograder for Gradescope: setup.sh and run_autograder at its root, the assignment and the files that it names in assignment/, a secret
+# of its own from which hidden scenes are drawn, and what lightcheck is
 # built from.
 set -eu
 program=$(cd "$(dirname "$1")" && pwd)/${1##*/}
@@ -26,8 +27,13 @@ trap 'rm -rf "$folder"' EXIT
 trap 'exit 1' HUP INT TERM
 
 cp verify/grade/gradescope/setup.sh verify/grade/gradescope/run_autograder "$folder"
-cp "$assignment" "$folder/assignment.json"
-sh verify/grade/kit/copy_files.sh "$program" "$assignment" "$folder"
+name=$(basename "$assignment")
+mkdir "$folder/assignment"
+cp "$assignment" "$folder/assignment"
+echo "$name" >"$folder/name"
+sh verify/grade/kit/copy_files.sh "$program" "$assignment" "$folder/assignment"
+od -An -N8 -tu8 /dev/urandom >"$folder/secret" # what hidden scenes are drawn from; a hand-in cannot read it
+chmod 600 "$folder/secret"
 mkdir "$folder/lightcheck"
 cp -R Makefile setup.sh LICENSE LICENSE-MIT src estimators scenes verify "$folder/lightcheck"
 rm -rf "$folder/lightcheck/verify/tests" "$folder/lightcheck/verify/proof"
