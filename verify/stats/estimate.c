@@ -73,7 +73,7 @@ static lc_arm_sums arm_of_pixel(const lc_pixel *pixel, int has_third, int channe
         double largest = bright ? m->max - m->mean : fabs(m->mean); /* no sample is negative; `max` is 0 in a film from a file */
         arm.third = m->m3 * scale;
         arm.cubes[bright] = fabs(m->m3);
-        arm.sixths[bright] = bright && !(m->max > 0) ? INFINITY : fabs(m->m3) * pow(largest, 3);
+        arm.sixths[bright] = bright && !(m->max > 0) ? INFINITY : fabs(m->m3) * largest * largest * largest;
     } else
         arm.doubt = m->m2 * sqrt(m->m2) * scale; /* |m3| <= sum |d|^3 <= (sum d^2)^(3/2) */
     return arm;
@@ -194,7 +194,7 @@ lc_student lc_estimate_student(const lc_estimate *e)
         for (int bright = 0; bright < 2; ++bright)
             if (arm->cubes[bright] > 0)
                 s.events[bright ? rising : falling] =
-                    fmin(s.events[bright ? rising : falling], pow(arm->cubes[bright], 2) / arm->sixths[bright]);
+                    fmin(s.events[bright ? rising : falling], arm->cubes[bright] * arm->cubes[bright] / arm->sixths[bright]);
         if (arm->doubt > 0)
             s.events[LC_LOW] = s.events[LC_HIGH] = 0;
     }

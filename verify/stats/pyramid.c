@@ -130,19 +130,19 @@ static void guard(const visit_state *state, int l, double pixels, lc_student *st
 static lc_estimate even_out(const lc_estimate *e)
 {
     lc_estimate out = *e;
-    double unit = e->expected / e->pixels;
-    out.difference /= unit;
-    out.expected /= unit;
-    out.tolerance /= unit;
+    double scale = e->pixels / e->expected, square = scale * scale, cube = square * scale;
+    out.difference *= scale;
+    out.expected *= scale;
+    out.tolerance *= scale;
     for (int i = 0; i < 2; ++i) {
         lc_arm_sums *arm = &out.arm[i];
-        arm->variance /= pow(unit, 2);
-        arm->variance2 /= pow(unit, 4);
-        arm->third /= pow(unit, 3);
-        arm->doubt /= pow(unit, 3);
+        arm->variance *= square;
+        arm->variance2 *= square * square;
+        arm->third *= cube;
+        arm->doubt *= cube;
         for (int bright = 0; bright < 2; ++bright) {
-            arm->cubes[bright] /= pow(unit, 3);
-            arm->sixths[bright] /= pow(unit, 6);
+            arm->cubes[bright] *= cube;
+            arm->sixths[bright] *= cube * cube;
         }
     }
     return out;
