@@ -5,7 +5,6 @@
 #include "cli/commands.h"
 #include "io/exr.h"
 #include "io/png.h"
-#include "verify/renderers/program.h"
 #include "verify/report/safe.h"
 
 typedef struct render_arguments {
@@ -47,20 +46,12 @@ static void name_of_bounce(char *out, size_t size, const char *path, int bounce)
     snprintf(out, size, "%.*s.%d%s", stem, path, bounce, dot ? dot : "");
 }
 
-/* Appends to a command line, each word quoted; `room` is that of the line. */
-static void add_word(char *line, size_t room, const char *before, const char *text)
-{
-    char word[LC_SHELL_WORD(LC_PROGRAM_PATH)], whole[LC_PROGRAM_PATH]; /* no longer path can be opened */
-    size_t length = strlen(line);
-    snprintf(whole, sizeof whole, "%s", text);
-    snprintf(line + length, room - length, "%s%s", before, lc_shell_word(word, whole));
-}
-
+/* Each word quoted; `room` is that of the line. */
 static void add_count(char *line, size_t room, const char *before, uint64_t count)
 {
     char text[32];
     snprintf(text, sizeof text, "%llu", (unsigned long long)count);
-    add_word(line, room, before, text);
+    lc_shell_add(line, room, before, text);
 }
 
 /* The command that replays the first bad sample of the film. */
@@ -68,19 +59,19 @@ static void say_replay(char *line, size_t room, const render_arguments *a, const
 {
     char text[64];
     snprintf(line, room, "lightcheck sample");
-    add_word(line, room, " ", scene);
-    add_word(line, room, " -e ", a->estimator);
+    lc_shell_add(line, room, " ", scene);
+    lc_shell_add(line, room, " -e ", a->estimator);
     snprintf(text, sizeof text, "%d,%d", film->bad_x, film->bad_y);
-    add_word(line, room, " --pixel ", text);
+    lc_shell_add(line, room, " --pixel ", text);
     add_count(line, room, " --index ", film->bad_sample);
     add_count(line, room, " --seed ", film->seed);
     add_count(line, room, " --bounces ", (uint64_t)film->max_bounces);
     if (film->min_bounces > 0)
         add_count(line, room, " --min-bounces ", (uint64_t)film->min_bounces);
     if (a->size)
-        add_word(line, room, " --size ", a->size);
+        lc_shell_add(line, room, " --size ", a->size);
     for (int i = 0; i < a->definitions.count; ++i)
-        add_word(line, room, " -D ", a->definitions.items[i]);
+        lc_shell_add(line, room, " -D ", a->definitions.items[i]);
 }
 
 static lc_status render_one(const lc_scene *scene, const lc_estimator *estimator, const lc_render_options *options,

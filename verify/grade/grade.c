@@ -25,14 +25,19 @@ void lc_grade_options_init(lc_grade_options *options)
 
 /* ---- the kinds that need no judge -------------------------------------------------------------------------------------- */
 
-static const char *plural(int count) { return count == 1 ? "" : "s"; }
+static const char *say_bounces(char out[64], const lc_grading *g, int count)
+{
+    lc_words words = {.count = 0};
+    lc_words_set(&words, "count", "%d", count);
+    return lc_say(out, 64, g->sentences, count == 1 ? "word_bounce" : "word_bounces", &words);
+}
 
 static void list_missing(lc_words *words, const lc_grading *g)
 {
     static const char *const lobes[] = {"diffuse", "mirror", "glass", "glossy"};
     static const char *const emitters[] = {"area", "point", "directional", "sky"};
     const lc_assignment *a = g->assignment;
-    char text[160] = "";
+    char text[160] = "", bounces[64];
     size_t used = 0;
     for (int i = 0; i < 4; ++i)
         if (a->lobes & ~g->estimator->lobes & 1U << i)
@@ -40,23 +45,18 @@ static void list_missing(lc_words *words, const lc_grading *g)
     for (int i = 0; i < 4; ++i)
         if (a->emitters & ~g->estimator->emitters & 1U << i)
             used += (size_t)snprintf(text + used, sizeof text - used, "%s%s", used ? ", " : "", emitters[i]);
-    if (g->estimator->max_bounces < a->bounces) {
-        char bounces[64];
-        lc_words count = {.count = 0};
-        lc_words_set(&count, "count", "%d", a->bounces);
-        lc_say(bounces, sizeof bounces, g->sentences, "word_bounces", &count);
-        snprintf(text + used, sizeof text - used, "%s%s", used ? ", " : "", bounces);
-    }
+    if (g->estimator->max_bounces < a->bounces)
+        snprintf(text + used, sizeof text - used, "%s%s", used ? ", " : "", say_bounces(bounces, g, a->bounces));
     lc_words_set(words, "missing", "%s", text);
 }
 
 static lc_status grade_descriptor(lc_grading *g, lc_test_result *out)
 {
+    char bounces[64];
     lc_words words = {.count = 0};
     list_missing(&words, g);
     int is_less = words.items[0].text[0] != 0;
-    lc_words_set(&words, "language", "%s, %d bounce%s", g->reference->name, g->assignment->bounces,
-                 plural(g->assignment->bounces));
+    lc_words_set(&words, "language", "%s, %s", g->reference->name, say_bounces(bounces, g, g->assignment->bounces));
     lc_test_settle(out, is_less ? 0 : 1);
     lc_test_say(out, g, is_less ? "claims_less" : "compiled", &words);
     return LC_OK;
@@ -115,10 +115,11 @@ static int bounces_of(const lc_grading *g, const lc_job *job)
 static int claims_less(const lc_grading *g, const lc_job *job, lc_test_result *out)
 {
     int needed = bounces_of(g, job);
+    char bounces[64];
     lc_words words = {.count = 0};
     if (g->estimator->max_bounces >= needed)
         return 0;
-    lc_words_set(&words, "missing", "%d bounce%s", needed, plural(needed));
+    lc_words_set(&words, "missing", "%s", say_bounces(bounces, g, needed));
     lc_test_settle(out, 0);
     lc_test_say(out, g, "claims_less", &words);
     return 1;

@@ -66,7 +66,8 @@ static const lc_sentence table[] = {
     {"images_left_out", "left out: images of a renderer cannot tell"},
     /* words in others */
     {"word_tile", "{width} x {height} pixels at {x},{y}"},
-    {"word_bounces", "bounces up to {count}"},
+    {"word_bounce", "{count} bounce"},
+    {"word_bounces", "{count} bounces"},
     /* what is withheld */
     {"withheld", "scene, numbers and the command that reproduces this are not shown until {until}"},
     {"withheld_ever", "scene, numbers and the command that reproduces this are not shown: another seed draws another scene"},

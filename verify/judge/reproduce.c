@@ -12,10 +12,7 @@
 
 static void add(lc_row *row, const char *before, const char *text)
 {
-    char word[LC_SHELL_WORD(LC_PROGRAM_PATH)], whole[LC_PROGRAM_PATH]; /* no longer path can be opened */
-    size_t length = strlen(row->reproduce);
-    snprintf(whole, sizeof whole, "%s", text);
-    snprintf(row->reproduce + length, sizeof row->reproduce - length, "%s%s", before, lc_shell_word(word, whole));
+    lc_shell_add(row->reproduce, sizeof row->reproduce, before, text);
 }
 
 /* In as many digits as give the same number. */

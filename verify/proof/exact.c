@@ -263,7 +263,7 @@ static int report_tilted(FILE *table, uint64_t seed)
     fprintf(
         table,
         "\n## A pyramid of %dx%d pixels of coins, by importance sampling\n\nA FAIL anywhere on any level, over alpha; "
-        "+- is one standard error of %d draws. The judge's guard pools the\nskewness of a level; `own` trusts each "
+        "+- is one standard error of %d draws. The judge's guard asks the\ntiles around a tile, too; `own` trusts each "
         "tile's, `unguarded` none. (An error that is not small beside its rate means\nthat the rate is ruled by "
         "events that the loaded coins do not aim at.)\n\n"
         "| alpha | p | skewness | samples | judge | own guard | unguarded |\n|---|---|---|---|---|---|---|\n",

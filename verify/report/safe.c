@@ -70,3 +70,11 @@ char *lc_shell_word(char *out, const char *text)
     *at = 0;
     return out;
 }
+
+void lc_shell_add(char *line, size_t room, const char *before, const char *text)
+{
+    char word[LC_SHELL_WORD(LC_SHELL_LONGEST)], whole[LC_SHELL_LONGEST + 1];
+    size_t length = strlen(line);
+    snprintf(whole, sizeof whole, "%s", text);
+    snprintf(line + length, room - length, "%s%s", before, lc_shell_word(word, whole));
+}

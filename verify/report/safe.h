@@ -23,5 +23,9 @@ void lc_xml_text(FILE *out, const char *text);
 #define LC_SHELL_WORD(length) (4 * (length) + 3)
 /* A text as one word of a POSIX shell: in quotes unless it needs none. Returns `out`, of LC_SHELL_WORD(strlen(text)) bytes. */
 char *lc_shell_word(char *out, const char *text);
+/* Appends `before` and a word to a command line of `room` bytes, as far as there is room; of a text of LC_SHELL_LONGEST bytes at most, which
+ * is longer than any path that can be opened. */
+enum { LC_SHELL_LONGEST = 4096 };
+void lc_shell_add(char *line, size_t room, const char *before, const char *text);
 
 #endif
