@@ -172,6 +172,8 @@ asan-check: ## the same under the address and undefined-behaviour sanitizers, bu
 lint: ## dependencies between folders run one way, and other rules that a compiler does not know
 	@sh verify/tests/lint.sh
 	@sh verify/tests/lint_selftest.sh
+	@sh verify/tests/judge_mutants.sh --fits
+	@sh verify/tests/host_mutants.sh --fits
 
 calibrate: $(BUILD)/calibrate ## how often the judge decides wrongly: results/calibration.md
 	$(BUILD)/calibrate results/calibration.md

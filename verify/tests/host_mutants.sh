@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# usage: host_mutants.sh [NAME ...]
+# usage: host_mutants.sh [--fits | NAME ...]
 # Hosts that are wrong on purpose: each is made by one substitution in a copy of the tree, and some test must fail.
 # Prints mutant and the tests that killed it. Exit status 0: all are dead; 1: one lives, or could not be made.
 set -eu

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# usage: judge_mutants.sh [NAME ...]
+# usage: judge_mutants.sh [--fits | NAME ...]
 # Judges that are wrong on purpose: each is made by one substitution in a copy of the tree, and some test must fail.
 # Prints mutant and the tests that killed it. Exit status 0: all are dead; 1: one lives, or could not be made.
 set -eu
@@ -43,9 +43,9 @@ mutant margin_of_a_relation_is_exact verify/judge/paired.c 's/fmax(0, mean - 8 \
 mutant tiles_of_differences verify/judge/paired.c 's/^    lc_plan_whole(&plan/    if (claim->whole_only) lc_plan_whole(\&plan/'
 
 # The pyramid.
-mutant pyramid_stops_early $pyramid 's/^\( *\)judge_tile(state, l, x, y, sum);/\1if (l < state->out->levels - 1) judge_tile(state, l, x, y, sum);/'
-mutant pyramid_without_pixels $pyramid 's/^\( *\)judge_tile(state, l, x, y, sum);/\1if (l > 0) judge_tile(state, l, x, y, sum);/'
-mutant quarter_of_a_tile_lost $pyramid 's/for (int child = 1; child < 4; ++child)/for (int child = 1; child < 3; ++child)/'
+mutant pyramid_stops_early $pyramid 's/^\( *\)judge_tile(state, l, x, y, &sum);/\1if (l < state->out->levels - 1) judge_tile(state, l, x, y, \&sum);/'
+mutant pyramid_without_pixels $pyramid 's/^\( *\)judge_tile(state, l, x, y, &sum);/\1if (l > 0) judge_tile(state, l, x, y, \&sum);/'
+mutant quarter_of_a_tile_lost $pyramid 's/for (int i = 1, cx, cy; i < 4; ++i)/for (int i = 1, cx, cy; i < 3; ++i)/'
 mutant narrow_images_lose_levels $pyramid 's/< width || 1 << (levels - 1) < height/< width \&\& 1 << (levels - 1) < height/'
 mutant tiles_not_paid_for $pyramid 's|plan->alpha_fail / out->levels / tiles|plan->alpha_fail / out->levels|; s/log(2 \* tiles \* out->levels)/log(2.0 * out->levels)/'
 mutant levels_not_paid_for $pyramid 's|plan->alpha_fail / out->levels / tiles|plan->alpha_fail / tiles|; s/log(2 \* tiles \* out->levels)/log(2 * tiles)/'
@@ -93,7 +93,7 @@ mutant rounding_once_for_all_merges $claim 's/return (1 + film->more_count) \* /
 
 # The line that gives a row again.
 mutant margin_not_said verify/judge/reproduce.c 's/if (o->margin > 0)/if (0)/' verify/words
-mutant file_not_quoted verify/judge/reproduce.c 's/lc_shell_word(word, whole)/whole/; s/char word.*, whole/char whole/' verify/words
+mutant file_not_quoted verify/report/safe.c 's/lc_shell_word(word, whole))/((void)word, whole))/' verify/words
 
 # What a PASS excludes.
 mutant missed_by_samples_of_a_pixel $claim 's/look->share \* (double)row->paths/look->share * (double)row->samples/'
