@@ -5,7 +5,8 @@
 # docs/*.md unless named) as a reader would, with PROGRAM as build/lightcheck, in a folder of its own: each must exit
 # with 0, or with N where the line ends in `# exits N`. After the line `<!-- slow -->`, and for make and ./setup.sh, only
 # the names are looked up: the command's options in its --help, the target in `make help`, the argument in setup.sh
-# --help. A line of build/lightcheck that is indented in place of such a block would be run by nobody, and is wrong.
+# --help. After the line `<!-- needs NAME -->` the block is run where the program NAME is installed, and is counted as left
+# out elsewhere. A line of build/lightcheck that is indented in place of such a block would be run by nobody, and is wrong.
 # Links to files of the project must lead somewhere. A ```c block after the line `<!-- NAME.c -->` is that file.
 # Exit status 0: all true, 1: something is not.
 set -eu
@@ -40,11 +41,11 @@ for file; do
     ' "$file"
 done
 
-# FILE:LINE, tab, `slow` or `run`, tab, exit status, tab, command.
+# FILE:LINE, tab, `slow`, `run` or the program that is needed, tab, exit status, tab, command.
 commands() {
     awk '
-        FNR == 1 { inside = slow = 0 }
-        inside && /^```/ { inside = slow = 0; next }
+        FNR == 1 { inside = 0; how = "run" }
+        inside && /^```/ { inside = 0; how = "run"; next }
         inside && /^[^#]/ {
             status = 0
             if (match($0, /[ ]+# exits [0-9]+$/)) {
@@ -52,10 +53,10 @@ commands() {
                 $0 = substr($0, 1, RSTART - 1)
             }
             sub(/[ ]+#[ ].*$/, "")
-            printf "%s:%d\t%s\t%d\t%s\n", FILENAME, FNR, slow ? "slow" : "run", status, $0
+            printf "%s:%d\t%s\t%d\t%s\n", FILENAME, FNR, how, status, $0
         }
         !inside && /^```sh$/ { inside = 1; next }
-        !inside && /[^ ]/ { slow = /^<!-- slow -->$/ }
+        !inside && /[^ ]/ { how = /^<!-- slow -->$/ ? "slow" : /^<!-- needs [a-z]+ -->$/ ? $3 : "run" }
     ' "$@"
 }
 
@@ -97,13 +98,20 @@ look_up_names() {
 set -f # the words of a command are looked up, not expanded
 tab=$(printf '\t')
 commands "$@" >"$temporary/commands"
-count=0
+count=0 left_out=0
 while IFS=$tab read -r where how expected line; do
     count=$((count + 1))
     case $how:$line in
     slow:* | *:make* | *:./setup.sh* | *:.ci/run*)
         look_up_names $line
         continue
+        ;;
+    run:*) ;;
+    *)
+        if ! command -v "$how" >/dev/null; then
+            left_out=$((left_out + 1))
+            continue
+        fi
         ;;
     esac
     status=0
@@ -126,5 +134,6 @@ for file; do
 done
 
 [ $count -gt 0 ] || { where=$1 && wrong 'no command at all'; }
+[ $left_out = 0 ] || echo "documents: $left_out commands left out, since what they need is not installed"
 echo "documents: $count commands, $failed wrong"
 [ $failed = 0 ]

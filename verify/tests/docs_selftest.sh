@@ -46,6 +46,18 @@ build/lightcheck nothing                 # wrong
 ```sh
 build/lightcheck nothing        # wrong
 ```
+<!-- needs sed -->
+```sh
+build/lightcheck nothing        # wrong
+build/lightcheck list checks
+```
+<!-- needs nowhere -->
+```sh
+build/lightcheck nothing
+```
+```sh
+build/lightcheck nothing        # wrong
+```
     build/lightcheck list checks # wrong
 A [link](document.md), one [elsewhere](https://example.org/x.md), and a broken [one](missing.md).
 END
