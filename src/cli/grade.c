@@ -13,7 +13,7 @@
 #include "verify/grade/metadata.h"
 #include "verify/grade/plugin.h"
 #include "verify/grade/seeds.h"
-#include "verify/renderers/adapter.h"
+#include "verify/renderers/replicates.h"
 
 typedef struct grade_arguments {
     const char *assignment, *seed, *secret, *only, *report, *student, *format, *out, *metadata;
@@ -40,6 +40,12 @@ static lc_status show_test(void *user, const lc_grade_result *result, lc_error *
     return a->out ? write_result(a, result, err) : LC_OK;
 }
 
+/* One hand-in of images, and no class of such folders. */
+static int is_images(const grade_arguments *a, const char *word)
+{
+    return a->class.images && lc_cli_is_folder(word) && lc_replicates_are_in(word);
+}
+
 static lc_status grade_one(const grade_arguments *a, const lc_assignment *assignment, const char *word, lc_grade_options *options,
                            lc_error *err)
 {
@@ -58,10 +64,11 @@ static lc_status grade_one(const grade_arguments *a, const lc_assignment *assign
         snprintf(purpose, sizeof purpose, "hand-in %s", id);
         options->seed = lc_seed_for(options->seed, purpose); /* known to nobody before it was handed in, and the same when it is graded again */
     }
-    if (status == LC_OK && lc_cli_is_folder(word)) {
+    int images = is_images(a, word);
+    if (status == LC_OK && !images && lc_cli_is_folder(word)) {
         status = lc_handins_find_one(&handins, word, err);
         file = status == LC_OK ? handins.items[0].path : NULL;
-    } else if (status == LC_OK && a->class.adapters) {
+    } else if (status == LC_OK && (images || a->class.adapters)) {
         status = lc_adapter_open(&adapter, word, 600, err);
         options->adapter = &adapter;
     } else if (status == LC_OK && !lc_is_plugin(word)) { /* one of ours, which needs no jail: to try an assignment out */
@@ -103,7 +110,7 @@ static lc_status read_seed(lc_grade_options *options, const grade_arguments *a, 
 static lc_status grade(void *user, const lc_strings *rest, lc_error *err)
 {
     grade_arguments *a = user;
-    int is_class = !a->metadata && (rest->count > 1 || lc_cli_is_folder(rest->items[0]));
+    int is_class = !a->metadata && (rest->count > 1 || (lc_cli_is_folder(rest->items[0]) && !is_images(a, rest->items[0])));
     lc_grade_options options;
     a->class.folder = a->out;
     a->class.has_seed = a->seed || a->secret;
@@ -154,6 +161,7 @@ static int run(const lc_command *self, int argc, char **argv)
         {0, "roster", LC_OPT_STRING, &a.class.roster, "FILE.csv", "of a class: who is in it; student_id,last_name,first_name,email,file,submitted", 0, 0, NULL},
         {0, "shard", LC_OPT_STRING, &a.class.shard, "I/N", "of a class: every N-th hand-in from the I-th on, 0 <= I < N; with --seed", 0, 0, NULL},
         {0, "solutions", LC_OPT_STRING, &a.class.solutions, "DIR", "of a class: compared with these, too; default estimators/", 0, 0, NULL},
+        {0, "images", LC_OPT_FLAG, &a.class.images, NULL, "FOLDER, or a hand-in's folder, with folders SCENE.BOUNCES of images (.exr) is graded by these", 0, 0, NULL},
         {0, "adapters", LC_OPT_FLAG, &a.class.adapters, NULL, "FILE, or an executable `adapter*` in a hand-in's folder, is graded by its images, NOT locked up", 0, 0, NULL},
         {0, "metadata", LC_OPT_STRING, &a.metadata, "FILE.json", "Gradescope's: attempt and moment; a folder is then one hand-in", 0, 0, NULL},
         {0, "only", LC_OPT_STRING, &a.only, "TEST", "only this test, without those that it requires", 0, 0, NULL},

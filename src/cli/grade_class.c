@@ -97,7 +97,7 @@ lc_status lc_cli_grade_class(const lc_cli_class *self, const lc_strings *words, 
         own[count++] = grade->report;
     if (self->secret)
         own[count++] = self->secret;
-    const lc_handins_options which = {self->adapters, own};
+    const lc_handins_options which = {self->adapters, self->images, own};
     lc_class_options o = {.assignment = assignment,
                           .handins = &handins,
                           .folder = self->folder ? self->folder : folder,

@@ -9,7 +9,7 @@
 #include "verify/grade/grade.h"
 
 typedef struct lc_cli_class {
-    int jobs, resume, has_seed, has_attempt, adapters;
+    int jobs, resume, has_seed, has_attempt, adapters, images;
     const char *roster, *shard, *solutions, *folder, *secret; /* NULL where not given */
 } lc_cli_class;
 

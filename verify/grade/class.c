@@ -86,7 +86,7 @@ static int grade_one(void *user)
     lc_adapter *adapter = calloc(1, sizeof *adapter);
     if (!result || !adapter)
         return LC_FAULT; /* the process ends */
-    if (t->row->handin->is_adapter) {
+    if (t->row->handin->is_adapter || t->row->handin->is_images) {
         if (lc_adapter_open(adapter, t->row->handin->path, c->options->seconds, &err) != LC_OK)
             return (int)save_other(c, t->row, 0, err.text, &err);
         options.adapter = adapter;

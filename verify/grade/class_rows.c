@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "verify/grade/class_c.h"
+#include "verify/renderers/replicates.h"
 #include "verify/report/plain.h"
 
 static const uint64_t FNV = 14695981039346656037ULL;
@@ -37,7 +38,10 @@ static uint64_t digest_row(const lc_class *c, const lc_class_row *row)
 {
     const lc_handin *h = row->handin;
     const int64_t when = (int64_t)row->submitted;
-    uint64_t hash = h->path ? lc_class_digest(h->path) : mix(FNV, h->why, strlen(h->why));
+    time_t newest;
+    uint64_t hash = !h->path       ? mix(FNV, h->why, strlen(h->why))
+                    : h->is_images ? lc_replicates_digest(h->path, &newest)
+                                   : lc_class_digest(h->path);
     return c->options->assignment->late_per_day > 0 ? mix(hash, &when, sizeof when) : hash;
 }
 

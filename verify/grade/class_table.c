@@ -211,10 +211,10 @@ lc_status lc_class_compare(lc_class *c, lc_error *err)
     if (status == LC_OK)
         status = read_solutions(&solutions, c->options->solutions, &template, err);
     for (int i = 0; i < c->count && status == LC_OK; ++i)
-        if (c->rows[i].handin && c->rows[i].handin->path)
+        if (c->rows[i].handin && c->rows[i].handin->path && !c->rows[i].handin->is_images)
             status = lc_prints_read(&prints[i], c->rows[i].handin->path, &template, err);
     for (int i = 0; i < c->count && status == LC_OK; ++i)
-        if (c->rows[i].handin)
+        if (c->rows[i].handin && !c->rows[i].handin->is_images)
             compare_row(&c->rows[i], c, i, prints, &solutions);
     for (int i = 0; prints && i < c->count; ++i)
         lc_prints_release(&prints[i]);

@@ -230,7 +230,7 @@ static void start_test(lc_grading *g, lc_test_result *out, const lc_test *test, 
     withhold(out, g, test->visibility == LC_AFTER_DUE ? a->due : a->published, is_now);
     char file[LC_SHELL_WORD(1024)], which[LC_SHELL_WORD(256)];
     snprintf(out->reproduce, sizeof out->reproduce, "%s grade %s%s -a %s --seed %llu --only %s", g->options->program,
-             lc_grading_file(file, g), g->options->adapter ? " --adapters" : "",
+             lc_grading_file(file, g), g->options->adapter ? g->options->adapter->is_folder ? " --images" : " --adapters" : "",
              lc_shell_word(which, g->options->is_secret ? a->name : a->given),
              (unsigned long long)lc_grading_seed(g->options, test->visibility), test->name);
 }
@@ -450,7 +450,8 @@ static lc_status judge_all(lc_grading *g, lc_error *err)
     lc_status status = lc_grading_plan(g, err);
     for (int i = 0; i < g->assignment->test_count && status == LC_OK && !r->is_fault; ++i) {
         const lc_test *test = &g->assignment->tests[i];
-        const char *because = g->options->only ? NULL : obstacle(g, test);
+        int is_left_out = g->options->adapter && lc_images_cannot_tell(g, &g->jobs[i]);
+        const char *because = g->options->only || is_left_out ? NULL : obstacle(g, test);
         if (g->options->only && strcmp(g->options->only, test->name) != 0)
             continue;
         if (because)

@@ -49,7 +49,8 @@ lc_status lc_grade_finite(lc_grading *g, const lc_job *job, lc_test_result *out,
 lc_status lc_grade_claims(lc_grading *g, const lc_job *job, lc_test_result *out, lc_error *err);
 lc_status lc_grade_variance(lc_grading *g, const lc_job *job, lc_test_result *out, lc_error *err);
 
-/* The same of any kind, for an adapter; in grade_images.c. What images cannot tell counts for nothing: no points are asked for. */
+/* The same of any kind, for an adapter or images; in grade_images.c. What images cannot tell counts for nothing: no points are asked for. */
+int lc_images_cannot_tell(const lc_grading *g, const lc_job *job);
 lc_status lc_grade_images(lc_grading *g, const lc_job *job, lc_test_result *out, lc_error *err);
 
 /* What is shown wrong, but by less than 5% in every part of the image, earns this share of the points; what is not shown wrong earns more, or

@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 
 #include "verify/grade/compile.h"
+#include "verify/renderers/replicates.h"
 
 enum { PATH_SIZE = 4096, MOST_DEPTH = 8 };
 
@@ -41,9 +42,11 @@ static lc_status add(lc_handins *out, const char *name, const char *path, const 
         return no_memory(err);
     out->items = items;
     lc_handin *h = &items[out->count++];
-    *h = (lc_handin){copy_text(name), path ? copy_text(path) : NULL, path ? NULL : copy_text(why), 0, 0, when};
+    *h = (lc_handin){.name = copy_text(name), .path = path ? copy_text(path) : NULL, .why = path ? NULL : copy_text(why), .time = when};
     return h->name && (path ? h->path : h->why) ? LC_OK : no_memory(err);
 }
+
+static const lc_handins_options defaults = {0, 0, NULL};
 
 /* ---- a folder that is one hand-in ------------------------------------------------------------------------------------ */
 
@@ -51,7 +54,7 @@ typedef struct search {
     char path[PATH_SIZE]; /* of the first source file */
     char names[256];      /* of all */
     int count;
-    int adapters;              /* 1: these are looked for, too */
+    int adapters;         /* 1: these are looked for, too */
     char adapter[PATH_SIZE];
 } search;
 
@@ -85,25 +88,34 @@ static void look_into(search *s, const char *folder, int depth)
     closedir(dir);
 }
 
-static lc_status add_folder(lc_handins *out, const char *name, const char *folder, time_t when, int adapters, lc_error *err)
+static lc_status add_folder(lc_handins *out, const char *name, const char *folder, time_t when, const lc_handins_options *options,
+                            lc_error *err)
 {
     char why[512];
     search *s = calloc(1, sizeof *s);
     if (!s)
         return no_memory(err);
-    s->adapters = adapters;
+    s->adapters = options->adapters;
     look_into(s, folder, 0);
     if (s->adapter[0])
         strcpy(s->path, s->adapter);
     if (s->count == 0)
-        snprintf(why, sizeof why, "there is no source file (.c, .cc, .cpp, .cxx) in what was handed in");
+        snprintf(why, sizeof why, "there is no source file (.c, .cc, .cpp, .cxx) in what was handed in%s",
+                 options->images ? ", and no folder SCENE.BOUNCES of images (.exr)" : "");
     else
         snprintf(why, sizeof why, "expected one source file, and found %d: %s", s->count, s->names);
     struct stat info;
+    int images = options->images && s->count == 0 && !s->adapter[0] && lc_replicates_are_in(folder);
     int one = (s->adapter[0] || s->count == 1) && lstat(s->path, &info) == 0;
-    lc_status status = add(out, name, one ? s->path : NULL, why, one ? info.st_mtime : when, err);
+    if (one)
+        when = info.st_mtime;
+    if (images)
+        lc_replicates_digest(folder, &when);
+    lc_status status = add(out, name, one ? s->path : images ? folder : NULL, why, when, err);
     if (status == LC_OK)
         out->items[out->count - 1].is_adapter = s->adapter[0] != 0;
+    if (status == LC_OK)
+        out->items[out->count - 1].is_images = images;
     free(s);
     return status;
 }
@@ -167,7 +179,7 @@ static lc_status add_entry(lc_handins *out, const char *folder, const char *name
     if (S_ISREG(info.st_mode) && lc_is_source(name))
         return add(out, name, path, NULL, info.st_mtime, err);
     if (S_ISDIR(info.st_mode))
-        return add_folder(out, name, path, info.st_mtime, options->adapters, err);
+        return add_folder(out, name, path, info.st_mtime, options, err);
     return add_other(out, name, &info, err);
 }
 
@@ -200,7 +212,6 @@ static int has_one_to_grade(const lc_handins *h)
 
 lc_status lc_handins_find(lc_handins *out, const char *const *paths, int count, const lc_handins_options *options, lc_error *err)
 {
-    static const lc_handins_options defaults = {0, NULL};
     lc_status status = LC_OK;
     options = options ? options : &defaults;
     *out = (lc_handins){NULL, 0};
@@ -238,7 +249,7 @@ lc_status lc_handins_find_one(lc_handins *out, const char *folder, lc_error *err
     name_of(name, sizeof name, folder);
     if (stat(folder, &info) != 0 || !S_ISDIR(info.st_mode))
         return lc_fail(err, LC_BAD_INPUT, "%s: expected a folder", folder);
-    lc_status status = add_folder(out, name, folder, info.st_mtime, 0, err);
+    lc_status status = add_folder(out, name, folder, info.st_mtime, &defaults, err);
     if (status != LC_OK)
         lc_handins_release(out);
     return status;

@@ -11,9 +11,9 @@
 
 typedef struct lc_handin {
     char *name; /* of the file or folder, without its own folder; no other has it */
-    char *path; /* of the source file, or adapter, to be graded; NULL: there is none, and */
+    char *path; /* of the source file, adapter or folder of images to be graded; NULL: there is none, and */
     char *why;  /* this is why, for its author */
-    int is_adapter;
+    int is_adapter, is_images;
     int is_other; /* 1: neither source file nor folder, such as a text, an archive or a link. Work all the same, where its author has no other */
     time_t time;  /* when the file, or the folder, was last changed */
 } lc_handin;
@@ -26,6 +26,7 @@ typedef struct lc_handins {
 typedef struct lc_handins_options {
     int adapters;              /* 1: an executable called `adapter` or `adapter.*` in a folder is graded in place of a source file: it will run
                                 * with the caller's rights */
+    int images;                /* 1: a folder of images (verify/renderers/replicates.h) without source file is a hand-in, too */
     const char *const *except; /* paths of what is no hand-in, wherever it lies: the class's own files; ends with NULL. NULL: none */
 } lc_handins_options;
 

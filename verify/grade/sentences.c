@@ -64,6 +64,8 @@ static const lc_sentence table[] = {
     {"images_claim_less", "its --describe does not name all materials, lights or bounces that are asked for"},
     {"images_finite", "it renders; no pixel is NaN, infinite or negative"},
     {"images_left_out", "left out: images of a renderer cannot tell"},
+    {"images_bad", "{why}"},
+    {"images_missing", "{folder}: {count} images, where {least} are needed, each of a seed of its own"},
     /* words in others */
     {"word_tile", "{width} x {height} pixels at {x},{y}"},
     {"word_bounce", "{count} bounce"},

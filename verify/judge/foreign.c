@@ -12,9 +12,10 @@
 #include <string.h>
 
 #include "verify/judge/judge_c.h"
+#include "verify/renderers/replicates.h"
 
 /* Images before the first test, of a pilot, and the paths a pixel of its images. At a second look, four times as many. */
-enum { IMAGES = LC_LEAST_SAMPLES, PILOT_IMAGES = LC_BLOCK, PILOT_SAMPLES = 4, LOOKS = 2, MOST_FILMS = 32 };
+enum { IMAGES = LC_LEAST_IMAGES - LC_BLOCK, PILOT_IMAGES = LC_BLOCK, PILOT_SAMPLES = 4, LOOKS = 2, MOST_FILMS = 32 };
 
 typedef struct foreign_film {
     int min_bounces, max_bounces, samples, is_pilot;
@@ -120,10 +121,12 @@ static void add_images(foreign_film *f, const float *images, int count)
     f->film->count += (uint64_t)count;
 }
 
-/* Seeds of one film follow each other from a number of its own. */
+/* Seeds of one film follow each other from a number of its own; images of a folder have their places for seeds. */
 static uint32_t first_seed(const lc_session *session, const foreign_film *f)
 {
     char text[256];
+    if (session->options->renderer->is_folder)
+        return f->is_pilot ? 0 : PILOT_IMAGES;
     snprintf(text, sizeof text, "%s %d %d %d %d %llu", lc_scene_description(session->foreign->scene)->name, f->min_bounces,
              f->max_bounces, f->samples, f->is_pilot, (unsigned long long)session->options->seed);
     return 1 + (lc_arm(text) & 0x3fffffff);
@@ -252,26 +255,45 @@ static lc_exhibit evidence_of(const lc_film *film, const reference *r)
 
 typedef struct plan {
     double c, c_other, room;
-    int samples; /* a pixel of each image */
+    int samples;          /* a pixel of each image; of a folder's images 1: how many they have is not known, and c is theirs */
+    uint64_t most_images; /* that there are, besides the pilot's */
 } plan;
+
+/* Of a folder: the images of the claim, in whole blocks. */
+static lc_status count_images(plan *p, const lc_session *session, const lc_claim *claim, lc_error *err)
+{
+    const lc_scene_desc *d = lc_scene_description(claim->scene);
+    const lc_adapter *renderer = session->options->renderer;
+    int count = 0;
+    p->most_images = UINT64_MAX;
+    if (!renderer->is_folder)
+        return LC_OK;
+    lc_status status = lc_replicates_count(&count, renderer, d, claim->max_bounces, err);
+    if (status == LC_OK && count < LC_LEAST_IMAGES)
+        return lc_fail(err, LC_BAD_INPUT, "%d images in %s.%d/, at least %d are needed", count, d->name, claim->max_bounces, (int)LC_LEAST_IMAGES);
+    p->most_images = (uint64_t)(count - PILOT_IMAGES) / LC_BLOCK * LC_BLOCK;
+    return status;
+}
 
 /* Noise, margin and the samples of an image, from a pilot whose images are never used again. */
 static lc_status make_plan(plan *p, lc_row *row, lc_session *session, const lc_claim *claim, lc_error *err)
 {
     const lc_scene_desc *d = lc_scene_description(claim->scene);
-    int pixels = d->width * d->height;
+    int pixels = d->width * d->height, is_folder = session->options->renderer->is_folder, of_pilot = is_folder ? 1 : PILOT_SAMPLES;
     foreign_film *pilot;
-    lc_status status = film_of(&pilot, session, claim, PILOT_SAMPLES, 1, PILOT_IMAGES, err);
+    lc_status status = count_images(p, session, claim, err);
+    if (status == LC_OK)
+        status = film_of(&pilot, session, claim, of_pilot, 1, PILOT_IMAGES, err);
     if (status == LC_OK && claim->other)
         status = lc_claim_noise(&p->c_other, session, claim, claim->other, err);
     if (status != LC_OK)
         return status;
-    p->c = lc_film_noise(pilot->film) * sqrt(PILOT_SAMPLES);
+    p->c = lc_film_noise(pilot->film) * sqrt(of_pilot);
     row->margin = fmax(lc_claim_margin(session, claim, p->c), claim->margin);
     p->room = claim->margin > 0 ? row->margin - claim->tolerance : row->margin;
     double planned = (double)lc_planned_samples(hypot(p->c, p->c_other), p->room, pixels);
     double most = session->options->suite->most_samples / pixels;
-    p->samples = (int)fmax(1, ceil(fmin(planned, most) / IMAGES));
+    p->samples = is_folder ? 1 : (int)fmax(1, ceil(fmin(planned, most) / IMAGES));
     return LC_OK;
 }
 
@@ -300,6 +322,9 @@ static lc_status judge(lc_row *row, lc_session *session, const lc_claim *claim, 
     foreign_film *f = NULL;
     for (int k = 0; k < LOOKS && result.verdict == LC_GO_ON; ++k) {
         uint64_t images = (uint64_t)IMAGES << (2 * k);
+        images = images < p->most_images ? images : p->most_images;
+        if (f && f->film->count >= images)
+            break;
         lc_status status = film_of(&f, session, claim, p->samples, 0, images, err);
         if (status == LC_OK && claim->other)
             status = lc_session_film(&r->film, session, claim->scene, claim->other, claim->min_bounces, claim->max_bounces,
@@ -333,7 +358,7 @@ static lc_status judge(lc_row *row, lc_session *session, const lc_claim *claim, 
 lc_status lc_judge_foreign(lc_row *row, lc_session *session, const lc_claim *claim, lc_error *err)
 {
     const lc_scene_desc *d = lc_scene_description(claim->scene);
-    plan p = {0, 0, 0, 0};
+    plan p = {0, 0, 0, 0, 0};
     reference r = {NULL, NULL, NULL};
     lc_status status = know_scene(session, claim->scene, err);
     if (status == LC_OK && !claim->other)

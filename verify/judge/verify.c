@@ -10,6 +10,7 @@
 #include "estimators/registry.h"
 #include "verify/checks/family.h"
 #include "verify/judge/judge_c.h"
+#include "verify/renderers/replicates.h"
 
 void lc_verify_options_init(lc_verify_options *options)
 {
@@ -142,6 +143,8 @@ lc_status lc_verify(lc_report *report, const lc_verify_options *options, lc_load
     scenes = calloc((size_t)suite_scenes, sizeof *scenes);
     status = scenes ? lc_plan_host(&claims, err) : lc_fail(err, LC_FAULT, "out of memory for the scenes");
     for (int i = 0; i < suite_scenes && status == LC_OK; ++i) {
+        if (options->renderer && !lc_replicates_show(options->renderer, lc_suite_scenes[i]))
+            continue;
         status = lc_suite_scene(&scenes[scene_count], lc_suite_scenes[i], options->seed, load, err);
         if (status == LC_OK)
             status = plan_scene(&claims, &report->not_applicable, options, scenes[scene_count++], err);

@@ -2,17 +2,19 @@
  *
  * Calling an adapter: a scene file, a command, images.
  */
-#include "verify/renderers/adapter.h"
+#include "verify/renderers/adapter_c.h"
 
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "io/exr.h"
 #include "io/scene_write.h"
+#include "verify/renderers/replicates.h"
 
 enum { MOST_BATCH = 256, WORD = 24 };
 
@@ -142,19 +144,13 @@ static void name_after_file(lc_adapter *a)
     snprintf(a->name, sizeof a->name, "%.*s", dot && dot > stem ? (int)(dot - stem) : 63, stem);
 }
 
-lc_status lc_adapter_open(lc_adapter *out, const char *path, double seconds, lc_error *err)
+lc_status lc_adapter_prepare(lc_adapter *out, const char *path, lc_error *err)
 {
     memset(out, 0, sizeof *out);
     char here[LC_PROGRAM_PATH] = "";
-    if (!strchr(path, '/')) {
-        if (!lc_program_find(out->path, path))
-            return lc_fail(err, LC_BAD_INPUT, "--renderer %s: there is no such program", path);
-    } else if ((path[0] != '/' && !getcwd(here, sizeof here - 1)) ||
-               snprintf(out->path, sizeof out->path, "%s%s%s", here, here[0] ? "/" : "", path) >= LC_PROGRAM_PATH) {
-        return lc_fail(err, LC_BAD_INPUT, "--renderer %s: too long a path", path);
-    }
-    if (access(out->path, X_OK) != 0)
-        return lc_fail(err, LC_BAD_INPUT, "--renderer %s: not an executable: %s", path, strerror(errno));
+    if ((path[0] != '/' && !getcwd(here, sizeof here - 1)) ||
+        snprintf(out->path, sizeof out->path, "%s%s%s", here, here[0] ? "/" : "", path) >= LC_PROGRAM_PATH)
+        return lc_fail(err, LC_BAD_INPUT, "%s: too long a path", path);
     name_after_file(out);
     out->estimator = (lc_estimator){LC_ABI,
                                     out->name,
@@ -166,6 +162,22 @@ lc_status lc_adapter_open(lc_adapter *out, const char *path, double seconds, lc_
                                     NULL};
     out->rounding = 1e-6;
     out->batch = 1;
+    return LC_OK;
+}
+
+lc_status lc_adapter_open(lc_adapter *out, const char *path, double seconds, lc_error *err)
+{
+    char found[LC_PROGRAM_PATH];
+    struct stat info;
+    if (stat(path, &info) == 0 && S_ISDIR(info.st_mode))
+        return lc_replicates_open(out, path, err);
+    if (!strchr(path, '/') && !lc_program_find(found, path))
+        return lc_fail(err, LC_BAD_INPUT, "--renderer %s: there is no such program", path);
+    lc_status status = lc_adapter_prepare(out, strchr(path, '/') ? path : found, err);
+    if (status != LC_OK)
+        return status;
+    if (access(out->path, X_OK) != 0)
+        return lc_fail(err, LC_BAD_INPUT, "--renderer %s: not an executable: %s", path, strerror(errno));
     out->seconds = seconds;
     return describe(out, err);
 }
@@ -185,33 +197,37 @@ static lc_status write_scene(const char *folder, const lc_scene_desc *desc, lc_e
     return status;
 }
 
-static lc_status read_image(float *rgb, const lc_adapter *a, const lc_adapter_job *job, const char *folder, uint32_t seed,
-                            lc_error *err)
+lc_status lc_adapter_read_image(float *rgb, const char *path, const lc_scene_desc *d, const char *what, lc_error *err)
 {
-    char path[LC_PROGRAM_PATH], words[256];
-    const lc_scene_desc *d = job->scene;
     lc_film *film = NULL;
     lc_error why = {""};
-    snprintf(path, sizeof path, "%.*s/%lu.exr", LC_PROGRAM_PATH - 64, folder, (unsigned long)seed);
-    last_words(words, folder);
-    if (access(path, R_OK) != 0)
-        return lc_fail(err, LC_FAULT, "%s wrote no image of %s, seed %lu: %s", a->name, d->name, (unsigned long)seed, words);
     lc_status status = lc_exr_read(&film, path, &why);
     if (status != LC_OK)
-        return lc_fail(err, LC_FAULT, "%s, %s, seed %lu: %.300s", a->name, d->name, (unsigned long)seed, why.text);
+        return lc_fail(err, LC_FAULT, "%s: %.300s", what, why.text);
     if (film->width != d->width || film->height != d->height)
-        status = lc_fail(err, LC_FAULT, "%s wrote %d x %d pixels of %s, expected %d x %d", a->name, film->width,
-                         film->height, d->name, d->width, d->height);
+        status = lc_fail(err, LC_FAULT, "%s: %d x %d pixels, expected %d x %d", what, film->width, film->height, d->width, d->height);
     size_t count = (size_t)d->width * (size_t)d->height;
     for (size_t i = 0; status == LC_OK && i < count; ++i)
         for (size_t c = 0; c < 3; ++c) {
             double value = film->pixels[i].c[c].mean;
             if (film->bad || !(value >= 0 && value < INFINITY))
-                status = lc_fail(err, LC_FAULT, "%s, %s, seed %lu: the image has NaN, infinite or negative values", a->name,
-                                 d->name, (unsigned long)seed);
+                status = lc_fail(err, LC_FAULT, "%s: the image has NaN, infinite or negative values", what);
             rgb[3 * i + c] = (float)value;
         }
     lc_film_free(film);
+    return status;
+}
+
+static lc_status take_image(float *rgb, const lc_adapter *a, const lc_adapter_job *job, const char *folder, uint32_t seed,
+                            lc_error *err)
+{
+    char path[LC_PROGRAM_PATH], words[256], what[256];
+    snprintf(path, sizeof path, "%.*s/%lu.exr", LC_PROGRAM_PATH - 64, folder, (unsigned long)seed);
+    last_words(words, folder);
+    if (access(path, R_OK) != 0)
+        return lc_fail(err, LC_FAULT, "%s wrote no image of %s, seed %lu: %s", a->name, job->scene->name, (unsigned long)seed, words);
+    snprintf(what, sizeof what, "%s, %.100s, seed %lu", a->name, job->scene->name, (unsigned long)seed);
+    lc_status status = lc_adapter_read_image(rgb, path, job->scene, what, err);
     unlink(path);
     return status;
 }
@@ -249,7 +265,7 @@ static lc_status call(float *rgb, const lc_adapter *a, const lc_adapter_job *job
                        job->scene->name, words);
     size_t floats = 3 * (size_t)job->scene->width * (size_t)job->scene->height;
     for (int i = 0; i < count && status == LC_OK; ++i)
-        status = read_image(rgb + (size_t)i * floats, a, job, folder, seed + (uint32_t)i, err);
+        status = take_image(rgb + (size_t)i * floats, a, job, folder, seed + (uint32_t)i, err);
     return status;
 }
 
@@ -257,6 +273,8 @@ lc_status lc_adapter_render(float *rgb, const lc_adapter *a, const lc_adapter_jo
 {
     char folder[LC_PROGRAM_PATH];
     size_t floats = 3 * (size_t)job->scene->width * (size_t)job->scene->height;
+    if (a->is_folder)
+        return lc_replicates_read(rgb, a, job, err);
     lc_status status = lc_program_folder(folder, err);
     if (status != LC_OK)
         return status;

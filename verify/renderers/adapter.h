@@ -15,19 +15,21 @@
 enum { LC_ADAPTER_SECONDS = 600 }; /* for one call, unless somebody says otherwise */
 
 typedef struct lc_adapter {
-    char path[LC_PROGRAM_PATH]; /* absolute */
+    char path[LC_PROGRAM_PATH]; /* absolute; of the executable or folder */
     char name[64];              /* its own, else the file's stem */
     lc_estimator estimator;     /* what it says that it handles; it has no radiance() and cannot be rendered by lc_render() */
     double rounding;            /* relative error of its arithmetic, in [0, 0.01] */
     int batch;                  /* images of one call, in [1, 256] */
     int is_exact;               /* 1: the image depends on no seed: its error is that of a quadrature, which falls with SPP */
     double seconds;             /* for one call */
+    int is_folder;              /* 1: no program, but images that were rendered before: replicates.h */
 } lc_adapter;
 
 /* Looks the executable up and asks it `ADAPTER --describe`, which prints lines KEY=VALUE and exits with 0: name, lobes
  * (diffuse,mirror,glass), emitters (area,point,directional,sky), max_bounces, rounding (1e-6), batch (1), noise (seed or
  * none). With another exit status it is taken to know no --describe: all lobes and emitters, no limit of bounces.
- * LC_BAD_INPUT for no executable, and for lines that are not understood. `out` must not be moved: it points into itself. */
+ * Or a folder of images that were rendered before (replicates.h), which says nothing.
+ * LC_BAD_INPUT for neither of these, and for lines that are not understood. `out` must not be moved: it points into itself. */
 lc_status lc_adapter_open(lc_adapter *out, const char *path, double seconds, lc_error *err);
 
 /* What is to be rendered. */

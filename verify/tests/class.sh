@@ -202,6 +202,40 @@ awk '$4 == "of" { print $1, $2, $3 == "-" ? "none" : $3 == $5 ? "full" : "less" 
 diff expected got >difference || wrong "adapters (expected <, got >):
 $(cat difference)"
 
+# ---- and images that were rendered before ----
+
+make_images() { # NAME ESTIMATOR COUNT
+    mkdir -p "images/$1/plane_rectangle.1" "images/$1/plane_point.1"
+    seq "$3" | xargs -P 2 -I{} "$program" render plane_rectangle -e "$2" -s 2 --seed {} -o "images/$1/plane_rectangle.1/{}.exr" >log 2>&1
+    cp "images/$1/plane_rectangle.1/1.exr" "images/$1/plane_point.1" # of no account but that it can be read
+}
+make_images right light_direct 320
+make_images wrong light_no_cosine 320
+make_images few light_direct 5
+cp -R images/right images/damaged
+head -c 2000 images/right/plane_rectangle.1/9.exr >images/damaged/plane_rectangle.1/9.exr
+cp -R images/right images/copies
+cp images/right/plane_rectangle.1/9.exr images/copies/plane_rectangle.1/10.exr
+mkdir images/linked
+ln -s ../right/plane_rectangle.1 images/linked/plane_rectangle.1
+sed 's/"plane_point"/"plane_rectangle"/' "$small" >images.json
+"$program" grade images -a images.json -j 2 --seed 1 -o no_images >out 2>err || wrong "images: $(cat err)"
+"$program" grade images -a images.json -j 2 --seed 1 --images -o by_images >out 2>err || wrong "images: $(cat err)"
+printf '%s\n' 'copies CE none' 'damaged CE none' 'few CE none' 'linked CE none' 'right CE none' 'wrong CE none' \
+    'copies RTE less' 'damaged RTE less' 'few WA less' 'linked CE none' 'right AC full' 'wrong WA less' >expected
+awk '$4 == "of" { print $1, $2, $3 == "-" ? "none" : $3 == $5 ? "full" : "less" }' no_images/class.txt by_images/class.txt >got
+diff expected got >difference || wrong "images (expected <, got >):
+$(cat difference)"
+grep -q 'plane_rectangle.1: 5 images, where 320 are needed' by_images/feedback/few.txt || wrong 'no word of how many images are needed'
+grep -q '10.exr and 9.exr are the same image' by_images/feedback/copies.txt || wrong 'no word of two images that are one'
+grep -q '126\..% of the light' by_images/feedback/wrong.txt || wrong 'no word of how wrong the images are'
+rm images/right/plane_rectangle.1/320.exr
+"$program" grade images -a images.json -j 2 --seed 1 --images -o by_images --resume >out 2>err || wrong "images: $(cat err)"
+[ "$(grep -c '^\[' err)" = 1 ] && grep -q 'right .* WA ' err || wrong 'a folder with one image less was not graded anew'
+status=0
+"$program" grade images/wrong -a images.json --images >out 2>err || status=$?
+[ $status = 1 ] && grep -q '126\..% of the light' out || wrong "one folder of images: $status, $(cat err)"
+
 if [ -n "$results" ]; then
     {
         printf '# A class of %d hand-ins\n\nMade by `make class`. %s\n\n```text\n' "$count" \

@@ -15,6 +15,7 @@ static const struct {
     Suite *(*make)(void);
 } suites[] = {
     {"adapter", lc_suite_adapter},
+    {"replicates", lc_suite_replicates},
     {"class", lc_suite_class},
     {"sensitivity", lc_suite_sensitivity},
     {"diagnose", lc_suite_diagnose},

@@ -69,7 +69,7 @@ START_TEST(test_handins_others)
     lc_error err;
     char results[256], roster[256];
     const char *path = folder, *const except[] = {strcpy(results, at("results")), strcpy(roster, at("roster.csv")), at("absent"), NULL};
-    const lc_handins_options options = {0, except};
+    const lc_handins_options options = {0, 0, except};
     shell("touch a.c BIG.C x.CPP y.Cxx z.CC late.txt eve.ZIP Index.html THUMBS.DB desktop.ini .DS_Store roster.csv; mkfifo pipe; "
           "mkdir results __MACOSX; touch results/a.c __MACOSX/a.c");
     ck_assert_msg(lc_handins_find(&h, &path, 1, &options, &err) == LC_OK, "%s", err.text);
@@ -93,11 +93,36 @@ START_TEST(test_handins_adapter)
     lc_error err;
     const char *path = folder;
     shell("mkdir -p ann/src bob; touch ann/src/x.c ann/src/y.c ann/adapter.py bob/adapter bob/b.c; chmod +x ann/adapter.py");
-    const lc_handins_options with = {1, NULL};
+    const lc_handins_options with = {1, 0, NULL};
     ck_assert_int_eq(lc_handins_find(&h, &path, 1, &with, &err), LC_OK);
     ck_assert_int_eq(h.count, 2);
     ck_assert_str_eq(h.items[0].path, at("ann/adapter.py"));
     ck_assert(h.items[0].is_adapter && !h.items[1].is_adapter); /* that one is not executable */
+    lc_handins_release(&h);
+    ck_assert_int_eq(lc_handins_find(&h, &path, 1, NULL, &err), LC_OK);
+    ck_assert_ptr_null(h.items[0].path);
+    lc_handins_release(&h);
+}
+END_TEST
+
+/* Images count where they are asked for, and nothing else is there to be graded; the newest tells when. */
+START_TEST(test_handins_images)
+{
+    lc_handins h;
+    lc_error err;
+    const char *path = folder;
+    shell("mkdir -p ann/plane.1 ann/plane.2 bob/plane.1 cy/plane dan/plane.1 eve; touch ann/plane.1/1.exr ann/plane.2/b.exr bob/plane.1/1.exr bob/b.c "
+          "cy/plane/1.exr dan/plane.1/1.png; ln -s ../ann/plane.1 eve/plane.1; touch -d @1000 ann/plane.1/1.exr; touch -d @2000 ann/plane.2/b.exr");
+    const lc_handins_options with = {0, 1, NULL};
+    ck_assert_int_eq(lc_handins_find(&h, &path, 1, &with, &err), LC_OK);
+    ck_assert_int_eq(h.count, 5);
+    ck_assert_str_eq(h.items[0].path, at("ann"));
+    ck_assert_int_eq(h.items[0].time, 2000);
+    ck_assert_str_eq(h.items[1].path, at("bob/b.c"));
+    for (int i = 0; i < 5; ++i)
+        ck_assert_int_eq(h.items[i].is_images, i == 0);
+    for (int i = 2; i < 5; ++i)
+        ck_assert_ptr_nonnull(strstr(h.items[i].why, "and no folder SCENE.BOUNCES of images (.exr)"));
     lc_handins_release(&h);
     ck_assert_int_eq(lc_handins_find(&h, &path, 1, NULL, &err), LC_OK);
     ck_assert_ptr_null(h.items[0].path);
@@ -137,6 +162,7 @@ Suite *lc_suite_handins(void)
     tcase_add_test(tests, test_handins_find);
     tcase_add_test(tests, test_handins_others);
     tcase_add_test(tests, test_handins_adapter);
+    tcase_add_test(tests, test_handins_images);
     tcase_add_test(tests, test_handins_errors);
     suite_add_tcase(suite, tests);
     return suite;

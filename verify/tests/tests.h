@@ -15,6 +15,7 @@ Suite *lc_suite_affine(void);
 Suite *lc_suite_scene_read(void);
 Suite *lc_suite_scene_write(void);
 Suite *lc_suite_adapter(void);
+Suite *lc_suite_replicates(void);
 Suite *lc_suite_status(void);
 Suite *lc_suite_film(void);
 Suite *lc_suite_analytic(void);
