@@ -184,6 +184,11 @@ void lc_sampler_seek(lc_sampler *sampler, uint32_t dimension);
 /* The stream of an estimator: a 32-bit hash of its name. Two names, two streams. */
 uint32_t lc_arm(const char *name);
 
+/* FNV-1a, 64 bits, of bytes (Fowler, Noll, Vo; draft-eastlake-fnv): goes on from `hash`, which begins as LC_HASH. For tables and to tell
+ * versions apart, never against an adversary. */
+#define LC_HASH 0xcbf29ce484222325u
+uint64_t lc_hash(uint64_t hash, const void *bytes, size_t size);
+
 /* ---- film --------------------------------------------------------------------------------------------------- */
 
 enum { LC_BLOCK = 64 }; /* samples of a batch; films grow bit-exactly at multiples of it */

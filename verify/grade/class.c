@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "io/outfile.h"
+#include "io/hash_file.h"
 #include "verify/grade/class_c.h"
 #include "verify/grade/formats.h"
 #include "verify/grade/pool.h"
@@ -210,7 +211,7 @@ static lc_status begin(lc_class *c, lc_error *err)
 {
     int found = 0;
     lc_status status = lc_class_make_rows(c, err);
-    c->assignment_digest = lc_class_digest(c->options->assignment->path);
+    c->assignment_digest = lc_hash_file(LC_HASH, c->options->assignment->path);
     if (status == LC_OK)
         status = make_folders(c, err);
     if (status == LC_OK)

@@ -33,9 +33,6 @@ typedef struct lc_class {
     int count;
     int pending, done; /* of this run */
 } lc_class;
-
-/* class_rows.c. The file's content as a number, 0 where there is no such file. */
-uint64_t lc_class_digest(const char *path);
 /* A row for each hand-in and for each student without one. LC_BAD_INPUT: somebody has two. */
 lc_status lc_class_make_rows(lc_class *c, lc_error *err);
 

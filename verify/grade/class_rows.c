@@ -6,32 +6,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "io/hash_file.h"
 #include "verify/grade/class_c.h"
 #include "verify/renderers/replicates.h"
 #include "verify/report/plain.h"
-
-static const uint64_t FNV = 14695981039346656037ULL;
-
-/* FNV-1a */
-static uint64_t mix(uint64_t hash, const void *bytes, size_t size)
-{
-    for (const unsigned char *c = bytes; size-- > 0; ++c)
-        hash = (hash ^ *c) * 1099511628211ULL;
-    return hash;
-}
-
-uint64_t lc_class_digest(const char *path)
-{
-    unsigned char buffer[1 << 14];
-    uint64_t hash = FNV;
-    FILE *file = fopen(path, "rb");
-    if (!file)
-        return 0;
-    for (size_t n = fread(buffer, 1, sizeof buffer, file); n > 0; n = fread(buffer, 1, sizeof buffer, file))
-        hash = mix(hash, buffer, n);
-    fclose(file);
-    return hash;
-}
 
 /* Of all that its result depends on: the file, or why there is none; and where late work loses points, when it was handed in. */
 static uint64_t digest_row(const lc_class *c, const lc_class_row *row)
@@ -39,10 +17,10 @@ static uint64_t digest_row(const lc_class *c, const lc_class_row *row)
     const lc_handin *h = row->handin;
     const int64_t when = (int64_t)row->submitted;
     time_t newest;
-    uint64_t hash = !h->path       ? mix(FNV, h->why, strlen(h->why))
+    uint64_t hash = !h->path       ? lc_hash(LC_HASH, h->why, strlen(h->why))
                     : h->is_images ? lc_replicates_digest(h->path, &newest)
-                                   : lc_class_digest(h->path);
-    return c->options->assignment->late_per_day > 0 ? mix(hash, &when, sizeof when) : hash;
+                                   : lc_hash_file(LC_HASH, h->path);
+    return c->options->assignment->late_per_day > 0 ? lc_hash(hash, &when, sizeof when) : hash;
 }
 
 /* The label is the name of files and stands in tables: of a name that is too long, or has characters that do not belong there, it is what
@@ -57,7 +35,7 @@ static void make_label(lc_class_row *row, const char *name)
         snprintf(row->label, sizeof row->label, "%s", name);
     else
         snprintf(row->label, sizeof row->label, "%.*s~%016llx", LC_CLASS_LABEL - 20, plain,
-                 (unsigned long long)mix(FNV, name, strlen(name)));
+                 (unsigned long long)lc_hash(LC_HASH, name, strlen(name)));
 }
 
 /* What the gradebook calls its author: student_id, or without a roster the name without its ending. */

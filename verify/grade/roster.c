@@ -64,9 +64,7 @@ static lc_status read_header(int where[COLUMNS], char **fields, int count, lc_er
 static void name_anew(lc_roster *roster, uint64_t seed)
 {
     lc_student *s = &roster->students[roster->count - 1];
-    uint64_t hash = 14695981039346656037ULL ^ seed;
-    for (const char *c = s->id; *c; ++c)
-        hash = (hash ^ (unsigned char)*c) * 1099511628211ULL;
+    uint64_t hash = lc_hash(LC_HASH ^ seed, s->id, strlen(s->id));
     hash = (hash ^ hash >> 30) * 0xbf58476d1ce4e5b9ULL; /* SplitMix64's mixing: FNV leaves neighbours neighbours */
     hash = (hash ^ hash >> 27) * 0x94d049bb133111ebULL;
     uint32_t number = (uint32_t)(hash >> 32);

@@ -20,15 +20,6 @@ typedef struct tokens {
     size_t count, room;
 } tokens;
 
-static const uint64_t START = 14695981039346656037ULL;
-
-static uint64_t hash_bytes(uint64_t hash, const char *text, size_t size)
-{
-    for (size_t i = 0; i < size; ++i)
-        hash = (hash ^ (unsigned char)text[i]) * 1099511628211ULL; /* FNV-1a */
-    return hash;
-}
-
 /* ---- tokens ------------------------------------------------------------------------------------------------------ */
 
 static int add(tokens *t, const char *text, size_t size)
@@ -41,7 +32,7 @@ static int add(tokens *t, const char *text, size_t size)
         t->items = items;
         t->room = room;
     }
-    t->items[t->count++] = hash_bytes(START, text, size);
+    t->items[t->count++] = lc_hash(LC_HASH, text, size);
     return 1;
 }
 
@@ -133,7 +124,7 @@ static size_t make_grams(tokens *t)
 {
     size_t grams = t->count >= GRAM ? t->count - GRAM + 1 : 0;
     for (size_t i = 0; i < grams; ++i)
-        t->items[i] = hash_bytes(START, (const char *)(t->items + i), GRAM * sizeof *t->items);
+        t->items[i] = lc_hash(LC_HASH, t->items + i, GRAM * sizeof *t->items);
     return grams;
 }
 

@@ -17,6 +17,7 @@
 #include <time.h>
 
 #include "estimators/registry.h"
+#include "io/hash_file.h"
 #include "io/scene_path.h"
 #include "io/scene_read.h"
 #include "verify/judge/judge_c.h"
@@ -183,25 +184,14 @@ static lc_status meet_all(killing *k, const lc_estimator *subject, int is_varian
 
 /* ---- state ---------------------------------------------------------------------------------------------------------------------- */
 
-/* FNV-1a over the program: another build, another run. */
-static unsigned long long hash_file(const char *path, unsigned long long hash)
-{
-    FILE *f = fopen(path, "rb");
-    int c;
-    while (f && (c = getc(f)) != EOF)
-        hash = (hash ^ (unsigned long long)c) * 1099511628211ULL;
-    if (f)
-        fclose(f);
-    return hash;
-}
-
+/* Another build, or other scenes, are another run. */
 static unsigned long long hash_all(void)
 {
-    unsigned long long hash = hash_file("/proc/self/exe", 14695981039346656037ULL);
+    unsigned long long hash = lc_hash_file(LC_HASH, "/proc/self/exe");
     for (int i = 0; lc_suite_scenes[i]; ++i) {
         char path[LC_PATH_SIZE];
         if (lc_scene_locate(path, lc_suite_scenes[i], NULL) == LC_OK)
-            hash = hash_file(path, hash);
+            hash = lc_hash_file(hash, path);
     }
     return hash;
 }

@@ -210,15 +210,6 @@ lc_status lc_pov_measure(lc_pov_image *out, const lc_pov_case *c, const lc_scene
 
 /* ---- files ------------------------------------------------------------------------------------------------------- */
 
-uint64_t lc_pov_hash(const void *bytes, size_t length)
-{
-    const unsigned char *b = bytes;
-    uint64_t hash = 0xcbf29ce484222325u;
-    for (size_t i = 0; i < length; ++i)
-        hash = (hash ^ b[i]) * 0x100000001b3u;
-    return hash;
-}
-
 static lc_status hash_file(char hash[32], const char *path, lc_error *err)
 {
     FILE *file = fopen(path, "rb");
@@ -235,7 +226,7 @@ static lc_status hash_file(char hash[32], const char *path, lc_error *err)
     }
     int ok = bytes && !ferror(file);
     if (ok)
-        snprintf(hash, 32, "%016" PRIx64, lc_pov_hash(bytes, size));
+        snprintf(hash, 32, "%016" PRIx64, lc_hash(LC_HASH, bytes, size));
     free(bytes);
     if (file)
         fclose(file);

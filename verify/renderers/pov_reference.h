@@ -40,10 +40,6 @@ void lc_pov_image_release(lc_pov_image *image);
 lc_status lc_pov_measure(lc_pov_image *out, const lc_pov_case *c, const lc_scene_desc *desc, int threads,
                          lc_error *err);
 
-/* FNV-1a, 64 bits, of bytes (Fowler, Noll, Vo; draft-eastlake-fnv): tells an edited file from the one that was
- * rendered, not a forged one. */
-uint64_t lc_pov_hash(const void *bytes, size_t length);
-
 /* Writes FOLDER/NAME.exr (R G B; the error as standard deviation, squared, in variance.*) and NAME.json (version,
  * options, hash of the scene's file, convergence, time). NAME is "SCENE.pov", with ".radiosity" or another mode's name before
  * ".pov" unless that is direct. `scene_file` is hashed. */

@@ -8,11 +8,10 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "io/hash_file.h"
 #include "verify/renderers/adapter_c.h"
 
 enum { MOST_NAME = 256, MOST_IMAGES = 1 << 16 };
-
-static const uint64_t FNV = 14695981039346656037ULL;
 
 /* ---- what lies in a folder ------------------------------------------------------------------------------------------ */
 
@@ -120,29 +119,6 @@ lc_status lc_replicates_open(lc_adapter *out, const char *folder, lc_error *err)
 
 /* ---- images ------------------------------------------------------------------------------------------------------------ */
 
-static uint64_t mix(uint64_t hash, const void *bytes, size_t size)
-{
-    for (const unsigned char *c = bytes; size-- > 0; ++c)
-        hash = (hash ^ *c) * 1099511628211ULL;
-    return hash;
-}
-
-/* 0 where it cannot be read: reading it as an image says why. */
-static uint64_t mix_file(uint64_t hash, const char *path, time_t *newest)
-{
-    unsigned char buffer[1 << 14];
-    struct stat info;
-    FILE *file = fopen(path, "rb");
-    if (!file)
-        return 0;
-    if (newest && fstat(fileno(file), &info) == 0 && info.st_mtime > *newest)
-        *newest = info.st_mtime;
-    for (size_t n = fread(buffer, 1, sizeof buffer, file); n > 0; n = fread(buffer, 1, sizeof buffer, file))
-        hash = mix(hash, buffer, n);
-    fclose(file);
-    return hash;
-}
-
 typedef struct print {
     uint64_t hash;
     int index;
@@ -162,7 +138,7 @@ static lc_status refuse_copies(const names *images, const char *set, lc_error *e
     for (int i = 0; i < images->count && prints; ++i) {
         char path[LC_PROGRAM_PATH];
         snprintf(path, sizeof path, "%.*s/%s", LC_PROGRAM_PATH - MOST_NAME - 2, set, images->items[i]);
-        prints[i] = (print){mix_file(FNV, path, NULL), i};
+        prints[i] = (print){lc_hash_file(LC_HASH, path), i};
     }
     if (prints)
         qsort(prints, (size_t)images->count, sizeof *prints, by_hash);
@@ -207,7 +183,8 @@ lc_status lc_replicates_read(float *rgb, const lc_adapter *a, const lc_adapter_j
 
 uint64_t lc_replicates_digest(const char *folder, time_t *newest)
 {
-    uint64_t hash = FNV;
+    uint64_t hash = LC_HASH;
+    struct stat info;
     names sets;
     lc_error none;
     *newest = 0;
@@ -219,8 +196,10 @@ uint64_t lc_replicates_digest(const char *folder, time_t *newest)
         list(&images, set, 0, &none);
         for (int i = 0; i < images.count; ++i) {
             snprintf(path, sizeof path, "%.*s/%s", LC_PROGRAM_PATH - MOST_NAME - 2, set, images.items[i]);
-            hash = mix(mix(hash, sets.items[s], strlen(sets.items[s])), images.items[i], strlen(images.items[i]));
-            hash = mix_file(hash, path, newest);
+            hash = lc_hash(lc_hash(hash, sets.items[s], strlen(sets.items[s])), images.items[i], strlen(images.items[i]));
+            hash = lc_hash_file(hash, path);
+            if (lstat(path, &info) == 0 && info.st_mtime > *newest)
+                *newest = info.st_mtime;
         }
         free(images.items);
     }
