@@ -360,12 +360,17 @@ Suite *lc_suite_adapter(void)
     tcase_add_loop_test(tc, a_description_that_is_not_understood_is_bad_input, 0, sizeof nonsense / sizeof nonsense[0]);
     tcase_add_test(tc, no_program_is_bad_input);
     tcase_add_loop_test(tc, every_failure_is_said, 0, sizeof failures / sizeof failures[0]);
-    tcase_add_loop_test(tc, right_adapters_pass_and_wrong_ones_fail, 0, sizeof verdicts / sizeof verdicts[0]);
     tcase_add_test(tc, what_is_refused_is_noted);
     tcase_add_test(tc, a_crash_loses_one_row);
     tcase_add_test(tc, the_example_renders_what_it_says);
     suite_add_tcase(suite, tc);
+    tc = tcase_create("verdicts");
+    tcase_set_tags(tc, "long"); /* many programs are started; suite replicates runs the same code of ours */
+    tcase_set_timeout(tc, 30);
+    tcase_add_loop_test(tc, right_adapters_pass_and_wrong_ones_fail, 0, sizeof verdicts / sizeof verdicts[0]);
+    suite_add_tcase(suite, tc);
     tc = tcase_create("images");
+    tcase_set_tags(tc, "long");
     tcase_set_timeout(tc, 60);
     tcase_add_test(tc, images_that_move_as_one_do_not_fail);
     suite_add_tcase(suite, tc);

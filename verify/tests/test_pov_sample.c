@@ -217,11 +217,16 @@ Suite *lc_suite_pov_sample(void)
     Suite *suite = suite_create("pov_sample");
     TCase *tc = tcase_create("pov_sample");
     tcase_set_timeout(tc, 60);
-    tcase_add_loop_test(tc, the_mean_over_seeds_is_ours, 0, sizeof cases / sizeof cases[0]);
     tcase_add_test(tc, a_seed_gives_the_same_image_again);
     tcase_add_loop_test(tc, what_it_cannot_do_is_refused, 0, sizeof refused / sizeof refused[0]);
     suite_add_tcase(suite, tc);
+    tc = tcase_create("images");
+    tcase_set_tags(tc, "long"); /* many images of POV-Ray, no code that other tests do not run */
+    tcase_set_timeout(tc, 120);
+    tcase_add_loop_test(tc, the_mean_over_seeds_is_ours, 0, sizeof cases / sizeof cases[0]);
+    suite_add_tcase(suite, tc);
     tc = tcase_create("by_hand");
+    tcase_set_tags(tc, "long");
     tcase_set_timeout(tc, 300);
     tcase_add_loop_test(tc, scenes_altered_by_hand_fail, 0, sizeof by_hand / sizeof by_hand[0]);
     suite_add_tcase(suite, tc);

@@ -14,6 +14,35 @@ if [ "${1-}" = --fits ]; then
     sum_up() { [ "$unfit" = 0 ]; }
     return 0
 fi
+
+# Most of a mutant's time one core is busy: so as many processes as there are cores, each with a copy and its share of them.
+part=0 parts=1
+if [ "${1-}" = --part ]; then
+    part=${2%/*} parts=${2#*/}
+    shift 2
+elif [ $# -ne 1 ] && [ "$(getconf _NPROCESSORS_ONLN)" -gt 1 ]; then
+    parts=$(getconf _NPROCESSORS_ONLN)
+    outputs=$(mktemp -d)
+    trap 'rm -rf "$outputs"' EXIT
+    trap 'kill $processes 2>/dev/null; exit 1' HUP INT TERM
+    processes='' status=0
+    while [ "$part" -lt "$parts" ]; do
+        sh "$0" --part "$part/$parts" "$@" >"$outputs/$part" 2>&1 &
+        processes="$processes $!"
+        part=$((part + 1))
+    done
+    for process in $processes; do
+        wait "$process" || status=1
+    done
+    cat "$outputs"/* | awk -v what="$what" '
+        / wrong [a-z]*s, [0-9]* alive$/ { made += $1; alive += $(NF - 1); next }
+        /^$/ || (seen[$0]++ && /^\|/) { next }
+        { print }
+        END { printf "\n%d wrong %ss, %d alive\n", made, what, alive; exit !made }
+    ' || status=1
+    exit $status
+fi
+
 temporary=$(mktemp -d)
 copy=$temporary/tree
 mkdir "$copy"
@@ -51,7 +80,7 @@ shorten() {
     fi
 }
 
-made=0 alive=0
+nth=0 made=0 alive=0
 wanted=" $* "
 
 # mutant NAME FILE SED-COMMAND [SUITE ...]: one that is wrong; only these of the suites are asked, or all.
@@ -60,6 +89,8 @@ mutant() {
     '  ' | *" $1 "*) ;;
     *) return 0 ;;
     esac
+    nth=$((nth + 1))
+    [ $((nth % parts)) = "$part" ] || return 0
     name=$1 file=$copy/$2 command=$3
     shift 3
     made=$((made + 1))
@@ -81,7 +112,7 @@ mutant() {
 # The last line of the table; exit status 0: all are dead.
 sum_up() {
     printf '\n%d wrong %ss, %d alive\n' "$made" "$what" "$alive"
-    [ "$alive" = 0 ] && [ "$made" != 0 ]
+    [ "$alive" = 0 ] && [ $((made + parts)) -gt 1 ]
 }
 
 printf '| %-34s | killed by |\n|---|---|\n' mutant
