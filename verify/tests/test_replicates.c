@@ -42,8 +42,8 @@ static const lc_estimator *find(const char *name)
     return *e;
 }
 
-/* Images of plane_rectangle, of 4 samples and a seed each, whose light is `factor` times what it should be. */
-static void render(int first, int count, double factor)
+/* Images of plane_rectangle, of a seed each, whose light is `factor` times what it should be. */
+static void render(int first, int count, int samples, double factor)
 {
     lc_scene *scene;
     ck_assert_int_eq(lc_scene_open(&scene, "plane_rectangle", &err), LC_OK);
@@ -51,7 +51,7 @@ static void render(int first, int count, double factor)
     for (int k = first; k < first + count; ++k) {
         char path[128];
         lc_film *film;
-        lc_render_options options = {.max_bounces = 1, .seed = (uint64_t)k, .arm = 1, .count = 4, .threads = 1};
+        lc_render_options options = {.max_bounces = 1, .seed = (uint64_t)k, .arm = 1, .count = (uint64_t)samples, .threads = 1};
         ck_assert_int_eq(lc_film_create(&film, d->width, d->height, &err), LC_OK);
         ck_assert_int_eq(lc_render(film, scene, find("light_direct"), &options, &err), LC_OK);
         for (int i = 0; i < d->width * d->height; ++i)
@@ -90,10 +90,10 @@ static void expect_row(lc_row_verdict verdict, double margin, uint64_t images)
 
 START_TEST(right_images_pass_and_wrong_ones_fail)
 {
-    render(1, 320, 1);
+    render(1, 320, 4, 1);
     expect_row(LC_ROW_PASS, 0, 256);
     shell("rm */*.exr");
-    render(1, 320, 1.01);
+    render(1, 320, 4, 1.01);
     expect_row(LC_ROW_FAIL, 0, 256);
 }
 END_TEST
@@ -101,11 +101,11 @@ END_TEST
 /* 64 of them are the pilot's; what is not a whole block of 64 is not judged. */
 START_TEST(more_are_asked_where_they_are_there)
 {
-    render(1, 383, 1);
+    render(1, 383, 1, 1);
     expect_row(LC_ROW_UNDECIDED, 1e-4, 256);
-    render(384, 1, 1);
+    render(384, 1, 1, 1);
     expect_row(LC_ROW_UNDECIDED, 1e-4, 320);
-    render(385, 800, 1);
+    render(385, 800, 1, 1);
     expect_row(LC_ROW_UNDECIDED, 1e-4, 1024);
 }
 END_TEST
@@ -122,7 +122,7 @@ static void expect_note(const char *words)
 
 START_TEST(what_cannot_be_judged_is_said)
 {
-    render(1, 319, 1);
+    render(1, 319, 1, 1);
     expect_note("319 images in plane_rectangle.1/, at least 320 are needed");
     shell("ln -s 0001.exr plane_rectangle.1/link.exr; cp plane_rectangle.1/0001.exr plane_rectangle.1/.hidden.exr; "
           "cp plane_rectangle.1/0001.exr plane_rectangle.1/1.png");
@@ -139,7 +139,7 @@ START_TEST(images_are_read_in_the_order_of_their_names)
     lc_adapter a;
     lc_scene_desc desc;
     int count;
-    render(1, 3, 1);
+    render(1, 3, 1, 1);
     ck_assert_int_eq(lc_scene_describe(&desc, "plane_rectangle", &err), LC_OK);
     size_t floats = 3 * (size_t)desc.width * (size_t)desc.height;
     float *all = malloc(3 * floats * sizeof *all), *one = malloc(floats * sizeof *one);
