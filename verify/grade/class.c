@@ -8,8 +8,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "io/outfile.h"
 #include "io/hash_file.h"
+#include "io/outfile.h"
 #include "verify/grade/class_c.h"
 #include "verify/grade/formats.h"
 #include "verify/grade/pool.h"

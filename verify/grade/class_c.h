@@ -33,7 +33,8 @@ typedef struct lc_class {
     int count;
     int pending, done; /* of this run */
 } lc_class;
-/* A row for each hand-in and for each student without one. LC_BAD_INPUT: somebody has two. */
+
+/* class_rows.c. A row for each hand-in and for each student without one. LC_BAD_INPUT: somebody has two. */
 lc_status lc_class_make_rows(lc_class *c, lc_error *err);
 
 /* FOLDER/kind/LABEL.suffix, or FOLDER/kind where the label is NULL; LC_BAD_INPUT where that is too long. */

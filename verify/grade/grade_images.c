@@ -64,9 +64,8 @@ static int are_missing(lc_grading *g, lc_test_result *t, const lc_scene_desc *d,
 {
     const lc_adapter *adapter = g->options->adapter;
     lc_words words = {.count = 0};
-    lc_error none;
-    int count = 0;
-    if (!adapter->is_folder || lc_replicates_count(&count, adapter, d, bounces, &none) != LC_OK || count >= LC_LEAST_IMAGES)
+    int count = adapter->is_folder ? lc_replicates_count(adapter, d, bounces) : LC_LEAST_IMAGES;
+    if (count >= LC_LEAST_IMAGES)
         return 0;
     snprintf(t->scene, sizeof t->scene, "%s", d->name);
     lc_words_set(&words, "folder", "%s.%d", d->name, bounces);
@@ -90,14 +89,14 @@ static lc_status look_at_all(lc_grading *g, lc_test_result *t, const lc_job *job
     for (int i = 0; i < job->scene_count; ++i) {
         const lc_scene_desc *d = lc_scene_description(job->scenes[i]);
         lc_error why = {""};
-        int count = 0;
         if (are_missing(g, t, d, bounces))
             return LC_OK;
         float *rgb = malloc(3 * (size_t)d->width * (size_t)d->height * sizeof *rgb);
         if (!rgb)
             return lc_fail(err, LC_FAULT, "out of memory for an image");
         snprintf(t->scene, sizeof t->scene, "%s", d->name);
-        lc_status status = lc_replicates_count(&count, g->options->adapter, d, bounces, &why);
+        int count = lc_replicates_count(g->options->adapter, d, bounces);
+        lc_status status = lc_replicates_differ(g->options->adapter, d, bounces, &why);
         for (int k = 0; k < count && status == LC_OK; ++k) {
             lc_adapter_job order = {d, bounces, 1, (uint32_t)k, 1};
             status = lc_adapter_render(rgb, g->options->adapter, &order, &why);

@@ -110,7 +110,7 @@ static lc_status add_folder(lc_handins *out, const char *name, const char *folde
     if (one)
         when = info.st_mtime;
     if (images)
-        lc_replicates_digest(folder, &when);
+        when = lc_replicates_time(folder);
     lc_status status = add(out, name, one ? s->path : images ? folder : NULL, why, when, err);
     if (status == LC_OK)
         out->items[out->count - 1].is_adapter = s->adapter[0] != 0;

@@ -15,7 +15,7 @@ typedef struct lc_handin {
     char *why;  /* this is why, for its author */
     int is_adapter, is_images;
     int is_other; /* 1: neither source file nor folder, such as a text, an archive or a link. Work all the same, where its author has no other */
-    time_t time;  /* when the file, or the folder, was last changed */
+    time_t time;  /* when the file, the newest of the images, or else the folder was last changed */
 } lc_handin;
 
 typedef struct lc_handins {

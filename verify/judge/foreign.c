@@ -15,7 +15,9 @@
 #include "verify/renderers/replicates.h"
 
 /* Images before the first test, of a pilot, and the paths a pixel of its images. At a second look, four times as many. */
-enum { IMAGES = LC_LEAST_IMAGES - LC_BLOCK, PILOT_IMAGES = LC_BLOCK, PILOT_SAMPLES = 4, LOOKS = 2, MOST_FILMS = 32 };
+enum { IMAGES = LC_LEAST_SAMPLES, PILOT_IMAGES = LC_BLOCK, PILOT_SAMPLES = 4, LOOKS = 2, MOST_FILMS = 32 };
+
+typedef char least_images_are_these[LC_LEAST_IMAGES == IMAGES + PILOT_IMAGES ? 1 : -1]; /* fails to compile where not */
 
 typedef struct foreign_film {
     int min_bounces, max_bounces, samples, is_pilot;
@@ -264,15 +266,14 @@ static lc_status count_images(plan *p, const lc_session *session, const lc_claim
 {
     const lc_scene_desc *d = lc_scene_description(claim->scene);
     const lc_adapter *renderer = session->options->renderer;
-    int count = 0;
     p->most_images = UINT64_MAX;
     if (!renderer->is_folder)
         return LC_OK;
-    lc_status status = lc_replicates_count(&count, renderer, d, claim->max_bounces, err);
-    if (status == LC_OK && count < LC_LEAST_IMAGES)
+    int count = lc_replicates_count(renderer, d, claim->max_bounces);
+    if (count < LC_LEAST_IMAGES)
         return lc_fail(err, LC_BAD_INPUT, "%d images in %s.%d/, at least %d are needed", count, d->name, claim->max_bounces, (int)LC_LEAST_IMAGES);
     p->most_images = (uint64_t)(count - PILOT_IMAGES) / LC_BLOCK * LC_BLOCK;
-    return status;
+    return lc_replicates_differ(renderer, d, claim->max_bounces, err);
 }
 
 /* Noise, margin and the samples of an image, from a pilot whose images are never used again. */

@@ -87,6 +87,9 @@ typedef struct lc_session lc_session;
 /* The budget of the options is split among `rows` claims. The options outlive the session. LC_FAULT without memory. */
 lc_status lc_session_open(lc_session **out, const lc_verify_options *options, int rows, lc_error *err);
 void lc_session_close(lc_session *session); /* NULL is fine */
+/* Images without which no claim about a folder of them (verify/renderers/replicates.h) is judged: 64 tell their noise, 256 are judged. */
+enum { LC_LEAST_IMAGES = 320 };
+
 /* Fills a zeroed row, as lc_verify does. An estimator that gives no film fails its row. */
 lc_status lc_judge_claim(lc_row *row, lc_session *session, const lc_claim *claim, lc_error *err);
 

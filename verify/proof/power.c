@@ -113,14 +113,14 @@ static int is_open(const experiment *e, int exponent, int rule)
 {
     for (int i = 0; i < 2; ++i) {
         int without = LEAST - COARSE, with = MOST + 1;
-        for (int x = LEAST - COARSE; x <= MOST; ++x)
+        for (int x = LEAST; x <= MOST; ++x)
             if (e->known[x] >> rule & 1) {
                 if (!has_power(e, x, rule, powers[i]))
                     without = x;
                 else if (with > MOST)
                     with = x;
             }
-        if (without < exponent && exponent < with && without < MOST)
+        if (without < exponent && exponent < with)
             return 1;
     }
     return 0;

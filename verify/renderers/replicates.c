@@ -150,12 +150,21 @@ static lc_status refuse_copies(const names *images, const char *set, lc_error *e
     return status;
 }
 
-lc_status lc_replicates_count(int *count, const lc_adapter *a, const lc_scene_desc *scene, int bounces, lc_error *err)
+int lc_replicates_count(const lc_adapter *a, const lc_scene_desc *scene, int bounces)
+{
+    char set[LC_PROGRAM_PATH];
+    names images;
+    lc_error none;
+    lc_status status = list_set(&images, set, a, scene->name, bounces, &none);
+    free(images.items);
+    return status == LC_OK ? images.count : 0;
+}
+
+lc_status lc_replicates_differ(const lc_adapter *a, const lc_scene_desc *scene, int bounces, lc_error *err)
 {
     char set[LC_PROGRAM_PATH];
     names images;
     lc_status status = list_set(&images, set, a, scene->name, bounces, err);
-    *count = images.count;
     if (status == LC_OK && images.count > 0)
         status = refuse_copies(&images, set, err);
     free(images.items);
@@ -181,13 +190,13 @@ lc_status lc_replicates_read(float *rgb, const lc_adapter *a, const lc_adapter_j
     return status;
 }
 
-uint64_t lc_replicates_digest(const char *folder, time_t *newest)
+typedef void visit_image(void *user, const char *set, const char *name, const char *path);
+
+/* All images of a folder, in the order of their names. */
+static void visit_all(const char *folder, visit_image *visit, void *user)
 {
-    uint64_t hash = LC_HASH;
-    struct stat info;
     names sets;
     lc_error none;
-    *newest = 0;
     list(&sets, folder, 1, &none);
     for (int s = 0; s < sets.count; ++s) {
         char set[LC_PROGRAM_PATH], path[LC_PROGRAM_PATH];
@@ -196,13 +205,40 @@ uint64_t lc_replicates_digest(const char *folder, time_t *newest)
         list(&images, set, 0, &none);
         for (int i = 0; i < images.count; ++i) {
             snprintf(path, sizeof path, "%.*s/%s", LC_PROGRAM_PATH - MOST_NAME - 2, set, images.items[i]);
-            hash = lc_hash(lc_hash(hash, sets.items[s], strlen(sets.items[s])), images.items[i], strlen(images.items[i]));
-            hash = lc_hash_file(hash, path);
-            if (lstat(path, &info) == 0 && info.st_mtime > *newest)
-                *newest = info.st_mtime;
+            visit(user, sets.items[s], images.items[i], path);
         }
         free(images.items);
     }
     free(sets.items);
+}
+
+static void mix_image(void *user, const char *set, const char *name, const char *path)
+{
+    uint64_t *hash = user;
+    *hash = lc_hash(lc_hash(*hash, set, strlen(set)), name, strlen(name));
+    *hash = lc_hash_file(*hash, path);
+}
+
+uint64_t lc_replicates_digest(const char *folder)
+{
+    uint64_t hash = LC_HASH;
+    visit_all(folder, mix_image, &hash);
     return hash;
+}
+
+static void find_newest(void *user, const char *set, const char *name, const char *path)
+{
+    time_t *newest = user;
+    struct stat info;
+    (void)set;
+    (void)name;
+    if (lstat(path, &info) == 0 && info.st_mtime > *newest)
+        *newest = info.st_mtime;
+}
+
+time_t lc_replicates_time(const char *folder)
+{
+    time_t newest = 0;
+    visit_all(folder, find_newest, &newest);
+    return newest;
 }

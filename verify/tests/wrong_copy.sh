@@ -112,7 +112,7 @@ mutant() {
 # The last line of the table; exit status 0: all are dead.
 sum_up() {
     printf '\n%d wrong %ss, %d alive\n' "$made" "$what" "$alive"
-    [ "$alive" = 0 ] && [ $((made + parts)) -gt 1 ]
+    [ "$alive" = 0 ] && { [ "$made" != 0 ] || [ "$parts" -gt 1 ]; } # a part may have nothing to do
 }
 
 printf '| %-34s | killed by |\n|---|---|\n' mutant
