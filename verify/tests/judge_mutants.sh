@@ -37,7 +37,7 @@ mutant guard_of_the_tile_alone $pyramid 's/if (state->plan->guard != LC_GUARD_PO
 mutant tails_not_corrected $estimate 's/return s->skew\[side\] \* lc_skew_weight(alpha) \/ 3 + log(LC_RESERVE);/return 0;/'
 mutant skewness_of_the_wrong_side $estimate 's/double third = i == 0 ? arm->third : -arm->third;/double third = i == 1 ? arm->third : -arm->third;/'
 mutant skewness_cancels_between_arms $estimate 's/spoil\[LC_LOW\] += fmax(third, 0)/spoil[LC_LOW] += third/'
-mutant sixteen_samples_are_enough verify/stats/estimate.h 's/LC_LEAST_SAMPLES = 256/LC_LEAST_SAMPLES = 16/'
+mutant sixteen_samples_are_enough $pyramid 's/plan->least\[l\] = LC_LEAST_SAMPLES/plan->least[l] = 16/'
 
 mutant margin_of_a_relation_is_exact verify/judge/paired.c 's/fmax(0, mean - 8 \* error)/mean + 0 * error/'
 mutant tiles_of_differences verify/judge/paired.c 's/^    lc_plan_whole(&plan/    if (claim->whole_only) lc_plan_whole(\&plan/'
@@ -67,6 +67,7 @@ mutant one_look_paid_for $claim 's/session->rows, 3, LC_MOST_LOOKS};/session->ro
 mutant channels_not_paid_for $claim 's/session->rows, 3, LC_MOST_LOOKS};/session->rows, 1, LC_MOST_LOOKS};/'
 mutant pass_not_split_over_looks $budget 's|b->pass / ((double)b->rows \* b->looks)|b->pass / b->rows|'
 mutant cut_plan_rounded_beyond $budget '/most -= most % LC_BLOCK/d'
+mutant looks_below_the_least $budget 's/if (n < LC_LEAST_SAMPLES)/if (n < 16)/'
 mutant last_looks_cut $budget 's/{0.2, 0.4, 0.6, 1, 4}/{0.2, 0.4, 0.6, 0.6, 0.6}/'
 
 # Verdicts.

@@ -35,10 +35,10 @@ elif [ $# -ne 1 ] && [ "$(getconf _NPROCESSORS_ONLN)" -gt 1 ]; then
         wait "$process" || status=1
     done
     cat "$outputs"/* | awk -v what="$what" '
-        / wrong [a-z]*s, [0-9]* alive$/ { made += $1; alive += $(NF - 1); next }
+        / wrong [a-z]*s, [0-9]* alive/ { made += $1; alive += $4; sub(/.* alive:?/, ""); names = names $0; next }
         /^$/ || (seen[$0]++ && /^\|/) { next }
         { print }
-        END { printf "\n%d wrong %ss, %d alive\n", made, what, alive; exit !made }
+        END { printf "\n%d wrong %ss, %d alive%s\n", made, what, alive, names == "" ? "" : ":" names; exit !made }
     ' || status=1
     exit $status
 fi
@@ -80,7 +80,7 @@ shorten() {
     fi
 }
 
-nth=0 made=0 alive=0
+nth=0 made=0 alive=0 names=''
 wanted=" $* "
 
 # mutant NAME FILE SED-COMMAND [SUITE ...]: one that is wrong; only these of the suites are asked, or all.
@@ -104,14 +104,17 @@ mutant() {
         killers=$(failing ${*:-$suites})
         verdict='ALIVE'
     fi
-    [ -n "$killers" ] || alive=$((alive + 1))
     printf '| %-34s | %s |\n' "$name" "$(shorten ${killers:-"$verdict"})"
+    if [ -z "$killers" ]; then
+        alive=$((alive + 1)) names="$names $name"
+        case $verdict in *compile*) grep -m 3 ' error: ' "$temporary/log" || tail -n 3 "$temporary/log" ;; esac
+    fi
     cp "$temporary/kept" "$file" # not -p: newer than its object
 }
 
-# The last line of the table; exit status 0: all are dead.
+# The last line names those alive: it is often all that is kept of a log. Exit status 0: all are dead.
 sum_up() {
-    printf '\n%d wrong %ss, %d alive\n' "$made" "$what" "$alive"
+    printf '\n%d wrong %ss, %d alive%s\n' "$made" "$what" "$alive" "${names:+:$names}"
     [ "$alive" = 0 ] && { [ "$made" != 0 ] || [ "$parts" -gt 1 ]; } # a part may have nothing to do
 }
 
