@@ -188,12 +188,16 @@ Suite *lc_suite_stats_tiles(void)
 {
     Suite *suite = suite_create("stats_tiles");
     TCase *cases = tcase_create("tiles");
-    tcase_set_timeout(cases, 60);
-    tcase_add_loop_test(cases, the_right_fails_at_its_level, 0, sizeof worlds / sizeof worlds[0]);
-    tcase_add_loop_test(cases, right_passes_and_one_percent_fails, 0, IMAGE_AS_ONE + 1);
     tcase_add_test(cases, an_image_that_moves_as_one_is_one_pixel);
     tcase_add_test(cases, independence_costs_little);
     tcase_add_test(cases, levels_make_one_pyramid);
+    tcase_set_timeout(cases, 60);
     suite_add_tcase(suite, cases);
+    TCase *rates = tcase_create("rates");
+    tcase_set_tags(rates, "long"); /* many samples, no code that other tests do not run */
+    tcase_set_timeout(rates, 60);
+    tcase_add_loop_test(rates, the_right_fails_at_its_level, 0, sizeof worlds / sizeof worlds[0]);
+    tcase_add_loop_test(rates, right_passes_and_one_percent_fails, 0, IMAGE_AS_ONE + 1);
+    suite_add_tcase(suite, rates);
     return suite;
 }
