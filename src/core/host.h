@@ -277,9 +277,15 @@ typedef struct lc_render_options {
     int shard, shards;                         /* shards = 0 or 1: everything */
     const lc_term *minus;                      /* each sample less the sum of these: such a film may be negative */
     int minus_count;                           /* at most LC_MAX_TERMS; 0: nothing is taken off */
+    int costs;                                 /* 1: the film has what each sample cost in place of its radiance: see lc_cost_of */
     void (*progress)(void *user, double done); /* may be NULL; 0..1, ends with 1; from one thread */
     void *user;
 } lc_render_options;
+
+/* What a sample cost: (rays, random numbers, 0). Rays are lc_trace()'s and lc_visible()'s, the camera's not among them; numbers those that
+ * the estimator drew, by lc_next() or through a function that draws. To be started before the sample, in the thread that makes it. */
+void lc_cost_start(void);
+lc_rgb lc_cost_of(const lc_sampler *sampler);
 
 /* Adds samples [first, first + count) of every pixel (of the shard) to the film. The result depends on scene, estimator, options but not on
  * the number of threads. The film's size decides the image's. */

@@ -157,6 +157,7 @@ double lc_light_pdf_area(const lc_scene *scene, const lc_hit *hit)
 
 int lc_visible(const lc_scene *scene, const lc_hit *hit, const lc_light_sample *light)
 {
+    lc_count_ray();
     int to_infinity = isinf(light->distance);
     int visible =
         hit->valid && !lc_accel_occluded(scene->accel, scene, hit->p, hit->part, to_infinity ? light->wi : light->p,

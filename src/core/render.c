@@ -97,7 +97,11 @@ static int sample_of(lc_rgb *out, int *bad_term, packet *packets, const job *j, 
         const lc_term self = {j->scene, 1, 0}, *term = t < 0 ? &self : &o->minus[t];
         packet *p = &packets[1 + t];
         lc_options bounces = {o->min_bounces - term->shift, o->max_bounces - term->shift};
+        if (o->costs)
+            lc_cost_start();
         lc_rgb c = j->estimator->radiance(term->scene, &p->rays[i], &p->hits[i], &bounces, &p->samplers[i]);
+        if (o->costs)
+            c = lc_cost_of(&p->samplers[i]);
         if (!add_term(out, c, t, o)) {
             *bad_term = 1 + t;
             return 0;

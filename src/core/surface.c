@@ -42,8 +42,21 @@ void lc_intersect(const lc_scene *scene, const lc_ray *ray, lc_hit *hit)
         lc_log_hit(scene, "camera ray hits", hit);
 }
 
+/* A scene is read by many threads, and a hit is the estimator's to copy: so a thread counts, one sample at a time. */
+static __thread uint32_t ray_count;
+
+void lc_count_ray(void) { ++ray_count; }
+
+void lc_cost_start(void) { ray_count = 0; }
+
+lc_rgb lc_cost_of(const lc_sampler *sampler)
+{
+    return lc_color(ray_count, sampler->dimension - (double)LC_DIMENSION_ESTIMATOR, 0);
+}
+
 int lc_trace(const lc_scene *scene, const lc_hit *from, lc_vec3 wi, lc_hit *next)
 {
+    lc_count_ray();
     double time = from->time;
     lc_vec3 start = from->p;
     int part = from->part; /* `next` may be `from` */

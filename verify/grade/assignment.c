@@ -22,7 +22,7 @@ static const char root_keys[] = "title|summary|reference|lobes|emitters|bounces|
                                 "published|late|solutions|mutants_of|beyond|sentences|tests";
 static const char test_keys[] =
     "name|title|kind|points|requires|visibility|scenes|check|relation|bounces|at_least|at_most|hint";
-static const char kinds[] = "descriptor|finite|check|mean|variance"; /* in the order of lc_test_kind */
+static const char kinds[] = "descriptor|finite|check|mean|variance|rays|numbers|work"; /* in the order of lc_test_kind */
 static const char visibilities[] = "visible|after_due_date|after_published|hidden";
 static const char lobe_words[] = "diffuse|mirror|glass|glossy"; /* bit 0, 1, ... */
 static const char emitter_words[] = "area|point|directional|sky";
@@ -162,12 +162,12 @@ static lc_status read_particulars(lc_test *test, const lc_place *place, lc_error
 {
     static const struct {
         const char *key;
-        lc_test_kind kind;
-    } only[] = {{"check", LC_KIND_CHECK}, {"relation", LC_KIND_CHECK}, {"at_least", LC_KIND_VARIANCE}, {"at_most", LC_KIND_VARIANCE}};
+        int is_of_method;
+    } only[] = {{"check", 0}, {"relation", 0}, {"at_least", 1}, {"at_most", 1}};
     for (size_t i = 0; i < sizeof only / sizeof only[0]; ++i) {
         lc_place given = lc_place_key(place, only[i].key);
-        if (given.value && test->kind != only[i].kind)
-            return lc_place_fail(err, &given, "is for tests of kind %s", only[i].kind == LC_KIND_CHECK ? "check" : "variance");
+        if (given.value && !(only[i].is_of_method ? lc_is_of_method(test->kind) : test->kind == LC_KIND_CHECK))
+            return lc_place_fail(err, &given, "is for tests of kind %s", only[i].is_of_method ? "variance, rays, numbers or work" : "check");
     }
     lc_place check = lc_place_key(place, "check"), relation = lc_place_key(place, "relation");
     lc_place least = lc_place_key(place, "at_least"), most = lc_place_key(place, "at_most");
@@ -180,8 +180,8 @@ static lc_status read_particulars(lc_test *test, const lc_place *place, lc_error
         status = lc_place_number(&test->least, &least, 0, 0.95, 0, err);
     if (status == LC_OK)
         status = lc_place_number(&test->most, &most, 1.05, 100, 0, err);
-    if (status == LC_OK && test->kind == LC_KIND_VARIANCE && !least.value && !most.value)
-        status = lc_place_fail(err, place, "a test of kind variance needs at_least, at_most, or both");
+    if (status == LC_OK && lc_is_of_method(test->kind) && !least.value && !most.value)
+        status = lc_place_fail(err, place, "a test of kind variance, rays, numbers or work needs at_least, at_most, or both");
     return status;
 }
 

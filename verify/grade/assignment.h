@@ -16,8 +16,14 @@ typedef enum lc_test_kind {
     LC_KIND_FINITE,     /* a few samples over its scenes: none is NaN, infinite, negative or huge; nothing crashes or hangs */
     LC_KIND_CHECK,      /* all claims of one check of `lightcheck verify` about its scenes */
     LC_KIND_MEAN,       /* the mean of the reference estimator over its scenes */
-    LC_KIND_VARIANCE    /* the variance of the reference: the method that was asked for */
+    LC_KIND_VARIANCE,   /* the variance of the reference: the method that was asked for */
+    LC_KIND_RAYS,       /* as many rays a sample as the reference */
+    LC_KIND_NUMBERS,    /* as many random numbers a sample as the reference */
+    LC_KIND_WORK        /* variance times rays: what the same noise costs, however many paths are averaged in one sample */
 } lc_test_kind;
+
+/* 1: a test of the method: something about single samples, beside the same of the reference. */
+static inline int lc_is_of_method(lc_test_kind kind) { return kind >= LC_KIND_VARIANCE; }
 
 enum { LC_MOST_SCENES = 6, LC_MOST_SOLUTIONS = 12, LC_MOST_REQUIRED = LC_MOST_TESTS };
 
@@ -28,13 +34,13 @@ typedef struct lc_test {
     char scenes[LC_MOST_SCENES][64];    /* of the suites, families, or files (assignment_files.h) */
     int scene_lines[LC_MOST_SCENES];    /* where they stand in the assignment's file */
     int scene_count;
-    int min_bounces, max_bounces;       /* MEAN, FINITE, VARIANCE: what is summed; CHECK: only claims of these; -1: all that there are */
+    int min_bounces, max_bounces;       /* MEAN, FINITE, of a method: what is summed; CHECK: only claims of these; -1: all that there are */
     double points;
     lc_visibility visibility;
     int required[LC_MOST_REQUIRED], required_count; /* indices of earlier tests */
     char relation[32];                  /* CHECK: only the claims of this relation; "": all */
     char hint[400];                     /* of the test itself, before the bug is known; may be "" */
-    double least, most;                 /* VARIANCE: that of the reference times these; 0 and INFINITY where not given */
+    double least, most;                 /* of a method: that of the reference times these; 0 and INFINITY where not given */
 } lc_test;
 
 typedef struct lc_assignment {

@@ -154,7 +154,7 @@ static lc_status judge_test(lc_grading *g, int i, lc_error *err)
                        : job->test->kind == LC_KIND_DESCRIPTOR ? grade_descriptor(g, out)
                        : claims_less(g, job, out)              ? LC_OK
                        : job->test->kind == LC_KIND_FINITE   ? lc_grade_finite(g, job, out, &why)
-                       : job->test->kind == LC_KIND_VARIANCE ? lc_grade_variance(g, job, out, &why)
+                       : lc_is_of_method(job->test->kind) ? lc_grade_method(g, job, out, &why)
                                                              : lc_grade_claims(g, job, out, &why);
     out->seconds = now() - start;
     if (g->jail) {
@@ -226,6 +226,9 @@ static void start_test(lc_grading *g, lc_test_result *out, const lc_test *test, 
              : test->kind == LC_KIND_FINITE   ? "finite"
              : test->kind == LC_KIND_MEAN     ? "mean"
              : test->kind == LC_KIND_VARIANCE ? "variance"
+             : test->kind == LC_KIND_RAYS     ? "rays"
+             : test->kind == LC_KIND_NUMBERS  ? "numbers"
+             : test->kind == LC_KIND_WORK     ? "work"
                                               : test->check);
     withhold(out, g, test->visibility == LC_AFTER_DUE ? a->due : a->published, is_now);
     char file[LC_SHELL_WORD(1024)], which[LC_SHELL_WORD(256)];

@@ -56,7 +56,7 @@ int lc_images_cannot_tell(const lc_grading *g, const lc_job *job)
         return 1;
     for (int i = 0; i < job->claims.count; ++i)
         about_images |= !is_about_samples(&job->claims.items[i]);
-    return test->kind == LC_KIND_VARIANCE || ((test->kind == LC_KIND_CHECK || test->kind == LC_KIND_MEAN) && !about_images);
+    return lc_is_of_method(test->kind) || ((test->kind == LC_KIND_CHECK || test->kind == LC_KIND_MEAN) && !about_images);
 }
 
 /* Of a folder: a word that it is too few images, where it is. */

@@ -109,7 +109,7 @@ lc_status lc_grading_plan(lc_grading *g, lc_error *err)
         job->seed = lc_test_seed(lc_grading_seed(g->options, job->test->visibility), job->test->name);
         for (int s = 0; s < job->test->scene_count && status == LC_OK; ++s)
             status = plan_scene(job, s, g, err);
-        g->rows += job->test->kind == LC_KIND_VARIANCE ? job->scene_count : job->claims.count;
+        g->rows += lc_is_of_method(job->test->kind) ? job->scene_count : job->claims.count;
     }
     return status;
 }

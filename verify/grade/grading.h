@@ -47,7 +47,7 @@ void lc_grading_options(lc_verify_options *out, const lc_grading *g, const lc_jo
 /* Each judges one test and fills its result: status, code, points, sentence, numbers. An error is one of ours. */
 lc_status lc_grade_finite(lc_grading *g, const lc_job *job, lc_test_result *out, lc_error *err);
 lc_status lc_grade_claims(lc_grading *g, const lc_job *job, lc_test_result *out, lc_error *err);
-lc_status lc_grade_variance(lc_grading *g, const lc_job *job, lc_test_result *out, lc_error *err);
+lc_status lc_grade_method(lc_grading *g, const lc_job *job, lc_test_result *out, lc_error *err);
 
 /* The same of any kind, for an adapter or images; in grade_images.c. What images cannot tell counts for nothing: no points are asked for. */
 int lc_images_cannot_tell(const lc_grading *g, const lc_job *job);

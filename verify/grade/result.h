@@ -39,10 +39,10 @@ typedef struct lc_tile {
     double ratio; /* there: measured / expected */
 } lc_tile;
 
-/* What a test measured. For a test of the mean, everything is relative to the expected mean of reflected light; for a test of the
- * variance, to the reference's variance. */
+/* What a test measured. For a test of the mean, everything is relative to the expected mean of reflected light; for a test of a
+ * method, to the reference's variance, rays, random numbers, or variance times rays. */
 typedef struct lc_measured {
-    double expected;       /* what 1 is: mean radiance [W sr^-1 m^-2], or variance of one sample [its square] */
+    double expected;       /* what 1 is: mean radiance [W sr^-1 m^-2], or of one sample variance [its square], rays, random numbers or variance times rays */
     double measured;       /* measured / expected */
     double low, high;      /* interval of that ratio, may be infinite */
     double margin;         /* relative: what all points ask for */
@@ -60,7 +60,7 @@ typedef struct lc_test_result {
     char name[48];           /* in the assignment, of letters, digits, _ */
     char title[128];         /* for a person */
     char scene[64];          /* of the suites, or a family's; that of the worst claim */
-    char check[32];          /* which kind of test: compiles, finite, mean, variance, ... */
+    char check[32];          /* which kind of test: compiles, finite, mean, variance, rays, ... */
     uint64_t seed;           /* of its samples, and of its scene if drawn */
     double points;           /* earned */
     double most_points;

@@ -50,6 +50,32 @@ static const lc_sentence table[] = {
                        "clearly in the {tile}"},
     {"variance_unshown", "{scene}: a sample varies {measured} as much as one of the method that is asked for, but the mean of these samples, {mean} "
                          "of what is expected, is not shown right within {margin}"},
+    /* kinds rays, numbers and work */
+    {"rays_right", "{scene}: a sample follows {measured} as many rays as one of the method that is asked for, between {low} and {high}"},
+    {"rays_high", "{scene}: a sample follows {measured} as many rays as one of the method that is asked for, between {low} and {high}; at most "
+                  "{most}: are several paths averaged in one sample?"},
+    {"rays_low", "{scene}: a sample follows only {measured} as many rays as one of the method that is asked for, between {low} and {high}; at "
+                 "least {least}: what stands between two points, and what a path meets, is asked of the scene"},
+    {"rays_open", "{scene}: a sample follows {measured} as many rays as one of the method that is asked for, between {low} and {high}: too "
+                  "uncertain to tell"},
+    {"numbers_right", "{scene}: a sample draws {measured} as many random numbers as one of the method that is asked for, between {low} and {high}"},
+    {"numbers_high", "{scene}: a sample draws {measured} as many random numbers as one of the method that is asked for, between {low} and {high}; "
+                     "at most {most}: are several paths averaged in one sample?"},
+    {"numbers_low", "{scene}: a sample draws only {measured} as many random numbers as one of the method that is asked for, between {low} and "
+                    "{high}; at least {least}: does all that is random come from lc_next()?"},
+    {"numbers_open", "{scene}: a sample draws {measured} as many random numbers as one of the method that is asked for, between {low} and {high}: "
+                     "too uncertain to tell"},
+    {"work_right", "{scene}: for the same noise it follows {measured} as many rays as the method that is asked for, between {low} and {high}"},
+    {"work_high", "{scene}: for the same noise it follows {measured} as many rays as the method that is asked for, between {low} and {high}; at most "
+                  "{most}: is it that method?"},
+    {"work_low", "{scene}: for the same noise it follows only {measured} as many rays as the method that is asked for, between {low} and {high}; at "
+                 "least {least}: is it that method?"},
+    {"work_open", "{scene}: for the same noise it follows {measured} as many rays as the method that is asked for, between {low} and {high}: too "
+                  "uncertain to tell"},
+    {"cost_wrong", "{scene}: what samples cost is counted of right ones only: the mean of these is {mean} of the light that is expected, shown "
+                   "wrong most clearly in the {tile}"},
+    {"cost_unshown", "{scene}: what samples cost is counted of right ones only: the mean of these, {mean} of what is expected, is not shown right "
+                     "within {margin}"},
     /* how it ended */
     {"ended_RTE", "{scene}: it died: {reason}"},
     {"ended_TLE", "{scene}: it took too long: {reason}"},

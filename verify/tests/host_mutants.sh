@@ -74,6 +74,11 @@ mutant largest_is_the_last $film 's/m->max = o->max > m->max ? o->max : m->max;/
 mutant tail_of_a_block_lost $film 's/for (int j = 0; i + j < size; ++j) {/for (int j = 0; i + j + 3 < size; ++j) {/' film
 mutant same_samples_counted_twice $film 's/if (same && gap < a->count)/if (0)/' film
 mutant shards_shifted $film 's/has_shard(from, tile % from->shards)/has_shard(from, (tile + 1) % from->shards)/' film
+mutant shadow_rays_not_counted src/core/light.c '/lc_count_ray();/d' render
+mutant rays_not_counted src/core/surface.c '/^    lc_count_ray();/d' render
+mutant rays_of_all_samples src/core/surface.c 's/{ ray_count = 0; }/{ }/' render
+mutant numbers_of_the_camera_counted src/core/surface.c 's/ - (double)LC_DIMENSION_ESTIMATOR//' render
+mutant costs_are_radiance $render 's/if (o->costs)$/if (0)/' render
 mutant last_block_not_added $render 's/ || s + 1 == o->first + o->count)/)/' render
 
 # The camera.

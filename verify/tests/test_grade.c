@@ -161,6 +161,34 @@ START_TEST(test_grade_method)
 }
 END_TEST
 
+/* Two points on the lamp in place of one: twice the rays and numbers, and no more work for the same noise. */
+static const struct {
+    const char *kind, *bounds, *sentence;
+    double measured;
+} costs[] = {
+    {"rays", "\"at_most\": 1.5", "rays_high", 2},       {"rays", "\"at_least\": 0.5, \"at_most\": 4", "rays_right", 2},
+    {"numbers", "\"at_most\": 1.5", "numbers_high", 2}, {"numbers", "\"at_most\": 2.5", "numbers_right", 2},
+    {"work", "\"at_least\": 0.8, \"at_most\": 1.25", "work_right", 1},
+};
+
+START_TEST(test_grade_costs)
+{
+    char text[1024];
+    snprintf(text, sizeof text,
+             HEAD "\"tests\": [{\"name\": \"costs\", \"title\": \"T\", \"kind\": \"%s\", \"points\": 1, \"scenes\": [\"plane_rectangle\"], %s}]}",
+             costs[_i].kind, costs[_i].bounds);
+    assign(text);
+    lc_grade_options o = options();
+    o.estimator = lc_right_estimator("light_two_samples");
+    grade(&r, "two", &o);
+    const lc_test_result *t = &r.tests[0];
+    ck_assert_msg(strcmp(t->sentence_id, costs[_i].sentence) == 0, "%s: %s", t->sentence_id, t->sentence);
+    ck_assert_str_eq(t->check, costs[_i].kind);
+    ck_assert_msg(fabs(t->measured.measured - costs[_i].measured) < 0.05, "%s", t->sentence);
+    ck_assert_int_eq(t->points >= 1, strstr(costs[_i].sentence, "_right") != NULL);
+}
+END_TEST
+
 static lc_rgb no_light(const lc_scene *scene, const lc_ray *ray, const lc_hit *hit, const lc_options *o, lc_sampler *sampler)
 {
     (void)scene, (void)ray, (void)hit, (void)o, (void)sampler;
@@ -381,6 +409,7 @@ Suite *lc_suite_grade(void)
     tcase_add_test(points, test_grade_known_bug);
     tcase_add_test(points, test_grade_by_seed);
     tcase_add_test(points, test_grade_method);
+    tcase_add_loop_test(points, test_grade_costs, 0, sizeof costs / sizeof costs[0]);
     tcase_add_test(seen, test_grade_withheld);
     tcase_add_test(seen, test_grade_translated);
     tcase_add_test(seen, test_grade_late);

@@ -168,33 +168,39 @@ END_TEST
 /* cheats/learnt/: files that are right somewhere, and say whatever is asked for elsewhere. `lamp` and `method` are over a public scene, the others
  * over one that is drawn and hidden. What is learnt by heart earns points where it is right, over scenes that everybody can see: a
  * table of their images is an answer as good as another. Nothing is earned for a method that is not used, nor over scenes
- * that the file has not seen. */
+ * that the file has not seen; little noise by much work, and light without a ray, are found by what samples cost. */
+enum { LEARNT_TESTS = 7 };
 static const struct {
     const char *name;
-    int lamp, method, drawn, drawn_method;
+    int earned[LEARNT_TESTS]; /* lamp, method, drawn, drawn_method, rays, numbers, work */
 } learnt[] = {
-    {"dark_noise", 1, 0, 1, 0}, {"dim_noise", 1, 0, 1, 0},  {"running_mean", 1, 0, 1, 0},
-    {"known_scene", 1, 1, 0, 0}, {"known_bounces", 1, 0, 1, 0},
+    {"dark_noise", {1, 0, 1, 0, 0, 0, 0}},    {"dim_noise", {1, 0, 1, 0, 0, 0, 0}},     {"running_mean", {1, 0, 1, 0, 0, 0, 0}},
+    {"known_scene", {1, 1, 0, 0, 0, 0, 0}},   {"known_bounces", {1, 0, 1, 0, 0, 0, 0}}, {"many_paths", {1, 1, 1, 0, 0, 0, 0}},
+    {"own_generator", {1, 0, 1, 0, 1, 0, 0}},
 };
 enum { LEARNT = sizeof learnt / sizeof learnt[0] };
+
+/* As much work as three_point's, give or take what is left out where a cosine is negative. */
+#define COST(name) TEST(#name, #name, ", \"scenes\": [\"plane_rectangle\"], \"at_least\": 0.5, \"at_most\": 2")
 
 static void assign_method(void)
 {
     assign(HEAD "\"tests\": [" LAMP_ONLY ", " TEST("method", "variance", ", \"scenes\": [\"plane_rectangle\"], \"at_most\": 2") ", "
                 TEST("drawn", "check", ", \"check\": \"analytic\", \"scenes\": [\"random_rectangle\"], \"visibility\": \"hidden\"") ", "
-                TEST("drawn_method", "variance", ", \"scenes\": [\"random_rectangle\"], \"at_most\": 2, \"visibility\": \"hidden\"") "]}");
+                TEST("drawn_method", "variance", ", \"scenes\": [\"random_rectangle\"], \"at_most\": 2, \"visibility\": \"hidden\"") ", "
+                COST(rays) ", " COST(numbers) ", " COST(work) "]}");
 }
 
 START_TEST(test_fair_learnt)
 {
-    const int earned[] = {learnt[_i].lamp, learnt[_i].method, learnt[_i].drawn, learnt[_i].drawn_method};
+    const int *earned = learnt[_i].earned;
     char path[128];
     assign_method();
     lc_grade_options o = options();
     o.seed = 20 + (uint64_t)_i;
     snprintf(path, sizeof path, "verify/tests/cheats/learnt/%s.c", learnt[_i].name);
     grade(&r, path, &o);
-    for (int i = 0; i < 4; ++i) {
+    for (int i = 0; i < LEARNT_TESTS; ++i) {
         const lc_test_result *t = &r.tests[i];
         ck_assert_msg((t->points >= 1) == earned[i], "%s: %g points for %s: %s", path, t->points, t->name, t->sentence);
         ck_assert_msg(earned[i] || !(t->points > 0), "%s: %g points for %s: %s", path, t->points, t->name, t->sentence);
@@ -252,6 +258,18 @@ START_TEST(test_fair_still)
                   t->sentence);
     ck_assert_int_eq(t->status, strcmp(still[_i].sentence, "variance_right") == 0 ? LC_TEST_PASSED : LC_TEST_FAILED);
     ck_assert_msg(!strstr(t->sentence, "nan") && !strstr(t->sentence, "inf "), "%s", t->sentence);
+}
+END_TEST
+
+/* Right files earn all of it: the method that is asked for, and one that is like it. */
+START_TEST(test_fair_costs_of_the_right)
+{
+    static const char *const right[] = {"estimators/three_point.c", "estimators/light_direct.c"};
+    assign_method();
+    lc_grade_options o = options();
+    grade(&r, right[_i], &o);
+    for (int i = 0; i < LEARNT_TESTS; ++i)
+        ck_assert_msg(r.tests[i].points >= 1, "%s: %s", r.tests[i].name, r.tests[i].sentence);
 }
 END_TEST
 
@@ -314,6 +332,7 @@ Suite *lc_suite_grade_fair(void)
     tcase_add_test(tcase, test_fair_all_learnt);
     tcase_add_loop_test(tcase, test_fair_still, 0, sizeof still / sizeof still[0]);
     tcase_add_loop_test(tcase, test_fair_learnt, 0, LEARNT);
+    tcase_add_loop_test(tcase, test_fair_costs_of_the_right, 0, 2);
     suite_add_tcase(suite, tcase);
     return suite;
 }

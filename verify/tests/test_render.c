@@ -99,6 +99,43 @@ START_TEST(any_number_of_threads_gives_the_same_film)
 }
 END_TEST
 
+/* As many rays as the sample has bounces asked for, each from a hit or into nothing; two numbers a ray. */
+static lc_rgb costly(const lc_scene *scene, const lc_ray *ray, const lc_hit *hit, const lc_options *options,
+                     lc_sampler *sampler)
+{
+    (void)ray;
+    lc_hit next;
+    for (int i = 0; i < options->max_bounces; ++i) {
+        double u = lc_next(sampler), v = lc_next(sampler);
+        lc_trace(scene, hit, lc_uniform_hemisphere(lc_vec(0, 0, 1), u, v), &next);
+    }
+    return lc_color(NAN, -1, 0); /* what it would have been is not asked */
+}
+
+static const lc_estimator costly_estimator = {LC_ABI, "costly", "", "", 0, 0, 3, costly};
+
+/* A film of costs: in every sample of a pixel the same, here, whatever the threads and wherever the film starts. */
+START_TEST(costs_are_counted)
+{
+    lc_scene *scene = small_scene();
+    for (int bounces = 0; bounces <= 3; ++bounces)
+        for (int threads = 1; threads <= 3; threads += 2) {
+            lc_render_options options = {
+                .seed = 3, .arm = 4, .first = 5, .count = 70, .max_bounces = bounces, .threads = threads, .costs = 1};
+            lc_film *film = render(scene, &costly_estimator, options);
+            ck_assert_uint_eq(film->bad, 0);
+            for (int i = 0; i < WIDTH * HEIGHT; ++i) {
+                const lc_moments *rays = &film->pixels[i].c[0], *numbers = &film->pixels[i].c[1], *none = &film->pixels[i].c[2];
+                ck_assert(!(fabs(rays->mean - bounces) > 0) && !(rays->m2 > 0));
+                ck_assert(!(fabs(numbers->mean - 2 * bounces) > 0) && !(numbers->m2 > 0));
+                ck_assert(!(none->max > 0));
+            }
+            lc_film_free(film);
+        }
+    lc_scene_free(scene);
+}
+END_TEST
+
 START_TEST(a_film_grows_to_what_it_would_have_been)
 {
     static const uint64_t steps[] = {320, 960, 0};
@@ -374,12 +411,39 @@ START_TEST(replay_is_what_the_film_saw)
 }
 END_TEST
 
+/* Of shipped estimators: one ray to the lamp from each hit, from its three numbers; one ray from two numbers. */
+START_TEST(costs_of_direct_light)
+{
+    static const struct {
+        const char *name;
+        double numbers;
+    } known[] = {{"light_direct", 3}, {"hemisphere_direct", 2}};
+    lc_scene *scene = load("plane_rectangle");
+    lc_render_options options = {.seed = 3, .count = 4, .min_bounces = 1, .max_bounces = 1, .threads = 2, .costs = 1};
+    const lc_estimator *const *e = lc_estimators;
+    while (strcmp((*e)->name, known[_i].name) != 0)
+        ++e;
+    lc_film *film = render(scene, *e, options);
+    int hits = 0;
+    for (int i = 0; i < WIDTH * HEIGHT; ++i) {
+        const lc_pixel *p = &film->pixels[i];
+        ck_assert_double_eq_tol(p->c[1].mean, known[_i].numbers * p->c[0].mean, 1e-12);
+        hits += !(fabs(p->c[0].mean - 1) > 0);
+    }
+    ck_assert_int_gt(hits, WIDTH * HEIGHT / 2);
+    lc_film_free(film);
+    lc_scene_free(scene);
+}
+END_TEST
+
 Suite *lc_suite_render(void)
 {
     Suite *suite = suite_create("render");
     TCase *tc = tcase_create("core");
     tcase_set_timeout(tc, 60);
     tcase_add_test(tc, any_number_of_threads_gives_the_same_film);
+    tcase_add_test(tc, costs_are_counted);
+    tcase_add_loop_test(tc, costs_of_direct_light, 0, 2);
     tcase_add_test(tc, a_film_grows_to_what_it_would_have_been);
     tcase_add_test(tc, shards_make_the_whole);
     tcase_add_test(tc, bad_samples_are_counted_and_the_first_is_named);

@@ -19,6 +19,7 @@
 /* lc_render calls the estimator sample by sample in one fixed order; what it returns is what goes out. */
 static struct {
     const lc_estimator *estimator;
+    int costs; /* 1: what a sample cost is sent in its place; the estimator cannot know */
     size_t used;
     double buffer[3 * 1024];
 } out;
@@ -33,7 +34,11 @@ static void flush(void)
 static lc_rgb record(const lc_scene *scene, const lc_ray *ray, const lc_hit *hit, const lc_options *options,
                      lc_sampler *sampler)
 {
+    if (out.costs)
+        lc_cost_start();
     lc_rgb c = out.estimator->radiance(scene, ray, hit, options, sampler);
+    if (out.costs)
+        c = lc_cost_of(sampler);
     out.buffer[out.used++] = c.r;
     out.buffer[out.used++] = c.g;
     out.buffer[out.used++] = c.b;
@@ -120,7 +125,9 @@ static int render(const lc_wire_request *request, const lc_scene *scene, const l
     options.threads = 1;
     options.shard += options.shards * index;
     options.shards *= count;
+    options.costs = 0; /* record() has them */
     out.estimator = estimator;
+    out.costs = request->options.costs;
     if (lc_film_create(&film, request->width, request->height, NULL) != LC_OK ||
         lc_render(film, scene, &recorder, &options, NULL) != LC_OK)
         return 0;

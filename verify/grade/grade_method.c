@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  *
- * Tests that ask for a method: the variance of one sample, pooled over the image, beside the reference's. Neither is taken to be normal: many
- * films, each with its own variance, show by how much that is uncertain. It needs a finite fourth moment, so that it is asked for
- * over scenes only where a sample's light is bounded.
+ * Tests that ask for a method, by a number that a sample has, pooled over the image, beside the reference's: its variance, its rays, its
+ * random numbers, or its variance times its rays, which is what a given noise costs (the inverse of Hammersley and Handscomb's efficiency,
+ * Monte Carlo Methods 1964, 5.1) however many paths are averaged in one sample. None is taken to be normal: many films, each with its own number, show by how much that is uncertain. Of the variance
+ * that needs a finite fourth moment, so that it is asked for over scenes only where a sample's light is bounded.
  *
- * The films of this test can be told from others: by their samples a pixel, if by nothing else. So the samples that have the variance
+ * The films of this test can be told from others: by their samples a pixel, if by nothing else. So the samples that have the number
  * must have the right mean, too, and be independent of each other; else a file would give dark ones, or running means, where it
- * recognises the test.
+ * recognises the test. What samples cost is counted in films that are made once more, from the same random numbers: in the jail each film
+ * has processes of its own, and nothing that a file is given differs.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -27,7 +29,7 @@ enum { DECISIONS = 3 };
  * standard errors at the first look, and fifteen at the last. */
 static const double LEAST_MARGIN = 0.01;
 
-/* Mean and variance of the films' variances, and the films added up. */
+/* Mean and variance of the films' numbers, and the films added up. */
 typedef struct spread {
     int count;
     double mean, m2;
@@ -44,6 +46,16 @@ static double variance_of(const lc_film *film)
     return sum / (double)pixels;
 }
 
+/* Rays or random numbers of a sample, of a film of costs. */
+static double cost_of(const lc_film *film, lc_test_kind kind)
+{
+    size_t pixels = (size_t)film->width * (size_t)film->height;
+    double sum = 0;
+    for (size_t i = 0; i < pixels; ++i)
+        sum += film->pixels[i].c[kind == LC_KIND_NUMBERS ? 1 : 0].mean;
+    return sum / (double)pixels;
+}
+
 static lc_status start_sum(lc_film **out, const lc_film *film, lc_error *err)
 {
     lc_status status = lc_film_create(out, film->width, film->height, err);
@@ -56,9 +68,9 @@ static lc_status start_sum(lc_film **out, const lc_film *film, lc_error *err)
     return LC_OK;
 }
 
-static lc_status add_film(spread *s, const lc_film *film, lc_error *err)
+static lc_status add_film(spread *s, const lc_film *film, double v, lc_error *err)
 {
-    double v = variance_of(film), step = v - s->mean;
+    double step = v - s->mean;
     if (!s->sum) {
         lc_status status = start_sum(&s->sum, film, err);
         if (status != LC_OK)
@@ -79,6 +91,39 @@ static lc_status add_film(spread *s, const lc_film *film, lc_error *err)
     return LC_OK;
 }
 
+static lc_status render_film(lc_film **out, const lc_scene *scene, const lc_estimator *estimator, const lc_render_options *options,
+                             lc_error *err)
+{
+    const lc_scene_desc *desc = lc_scene_description(scene);
+    lc_status status = lc_film_create(out, desc->width, desc->height, err);
+    if (status != LC_OK)
+        return status;
+    status = lc_render(*out, scene, estimator, options, err);
+    if (status != LC_OK) {
+        lc_film_free(*out);
+        *out = NULL;
+    }
+    return status;
+}
+
+/* The number that the film's samples have. */
+static lc_status measure(double *out, const lc_film *film, lc_test_kind kind, const lc_scene *scene, const lc_estimator *estimator,
+                         lc_render_options options, lc_error *err)
+{
+    lc_film *costs;
+    if (kind == LC_KIND_VARIANCE) {
+        *out = variance_of(film);
+        return LC_OK;
+    }
+    options.costs = 1;
+    lc_status status = render_film(&costs, scene, estimator, &options, err);
+    if (status != LC_OK)
+        return status;
+    *out = cost_of(costs, kind) * (kind == LC_KIND_WORK ? variance_of(film) : 1);
+    lc_film_free(costs);
+    return LC_OK;
+}
+
 /* Renders the films up to number `count`. A film with bad samples goes to *bad, which the caller frees. */
 static lc_status grow(spread *s, lc_film **bad, const lc_grading *g, const lc_job *job, const lc_scene *scene,
                       const lc_estimator *estimator, int count, lc_error *err)
@@ -95,17 +140,18 @@ static lc_status grow(spread *s, lc_film **bad, const lc_grading *g, const lc_jo
     lc_status status = LC_OK;
     while (s->count < count && status == LC_OK && !*bad) {
         lc_film *film;
+        double value = 0;
         options.first = (uint64_t)s->count * options.count;
-        status = lc_film_create(&film, desc->width, desc->height, err);
+        status = render_film(&film, scene, estimator, &options, err);
         if (status != LC_OK)
             return status;
-        status = lc_render(film, scene, estimator, &options, err);
-        if (status == LC_OK && film->bad) {
+        if (film->bad) {
             *bad = film;
             return LC_OK;
         }
+        status = measure(&value, film, test->kind, scene, estimator, options, err);
         if (status == LC_OK)
-            status = add_film(s, film, err);
+            status = add_film(s, film, value, err);
         lc_film_free(film);
     }
     return status;
@@ -123,15 +169,16 @@ static int is_still(const lc_film *film)
     return 1;
 }
 
-/* Square of the relative error of a mean variance; taken in steps, for the squares of very small variances are 0. */
+/* Square of the relative error of a mean of these numbers; taken in steps, for the squares of very small variances are 0. */
 static double square_error(const spread *s) { return s->m2 / s->mean / s->mean / ((s->count - 1.0) * s->count); }
 
 /* The interval of the ratio a / b, by the logarithm, at a two-sided level: Student's t with Welch's degrees of freedom. */
-static void interval_of(lc_measured *out, const spread *a, const spread *b, double alpha)
+static void interval_of(lc_measured *out, const spread *a, const spread *b, lc_test_kind kind, double alpha)
 {
     out->expected = b->mean;
     out->samples = a->sum->count;
-    int none = is_still(a->sum), none_there = is_still(b->sum);
+    int varies = kind == LC_KIND_VARIANCE || kind == LC_KIND_WORK; /* rounding is no variance */
+    int none = !(a->mean > 0) || (varies && is_still(a->sum)), none_there = !(b->mean > 0) || (varies && is_still(b->sum));
     if (none || none_there) { /* of none at all nothing is uncertain */
         out->measured = out->low = out->high = !none ? INFINITY : none_there ? 1 : 0;
         return;
@@ -225,7 +272,7 @@ static void set_mean(lc_words *words, const lc_row *row, const lc_film *mine, co
 
 /* What one look found. */
 typedef struct look {
-    int variance;  /* as of decide() */
+    int ratio; /* as of decide() */
     int dependent;
     lc_row mean;
 } look;
@@ -233,21 +280,32 @@ typedef struct look {
 /* 1: nothing more to learn. */
 static int is_decided(const look *l)
 {
-    return l->dependent || l->mean.verdict == LC_ROW_FAIL || l->variance < 0 ||
-           (l->variance > 0 && l->mean.verdict == LC_ROW_PASS);
+    return l->dependent || l->mean.verdict == LC_ROW_FAIL || l->ratio < 0 ||
+           (l->ratio > 0 && l->mean.verdict == LC_ROW_PASS);
+}
+
+typedef enum finding { WRONG, UNSHOWN, HIGH, LOW, OPEN, RIGHT } finding;
+
+static finding finding_of(const look *l, const lc_measured *m, const lc_test *test)
+{
+    if (l->mean.verdict == LC_ROW_FAIL)
+        return WRONG;
+    if (l->ratio < 0)
+        return m->measured > test->most ? HIGH : LOW;
+    if (l->ratio == 0)
+        return OPEN;
+    return l->mean.verdict == LC_ROW_PASS ? RIGHT : UNSHOWN;
 }
 
 static const char *sentence_of(const look *l, const lc_measured *m, const lc_test *test)
 {
-    if (l->dependent)
-        return "dependent";
-    if (l->mean.verdict == LC_ROW_FAIL)
-        return "variance_wrong";
-    if (l->variance < 0)
-        return m->measured > test->most ? "variance_high" : "variance_low";
-    if (l->variance == 0)
-        return "variance_open";
-    return l->mean.verdict == LC_ROW_PASS ? "variance_right" : "variance_unshown";
+    static const char *const ids[][RIGHT + 1] = { /* in the order of lc_test_kind */
+        {"variance_wrong", "variance_unshown", "variance_high", "variance_low", "variance_open", "variance_right"},
+        {"cost_wrong", "cost_unshown", "rays_high", "rays_low", "rays_open", "rays_right"},
+        {"cost_wrong", "cost_unshown", "numbers_high", "numbers_low", "numbers_open", "numbers_right"},
+        {"cost_wrong", "cost_unshown", "work_high", "work_low", "work_open", "work_right"},
+    };
+    return l->dependent ? "dependent" : ids[test->kind - LC_KIND_VARIANCE][finding_of(l, m, test)];
 }
 
 static double report(lc_test_result *out, const lc_grading *g, const lc_job *job, const char *scene, const look *l,
@@ -256,7 +314,7 @@ static double report(lc_test_result *out, const lc_grading *g, const lc_job *job
     const lc_measured *m = &out->measured;
     lc_words words = {.count = 0};
     const char *id = sentence_of(l, m, job->test);
-    double share = strcmp(id, "variance_right") == 0;
+    double share = !l->dependent && finding_of(l, m, job->test) == RIGHT;
     lc_words_set(&words, "scene", "%s", scene);
     set_times(&words, "measured", m->measured, " times");
     set_times(&words, "low", m->low, "");
@@ -275,8 +333,8 @@ static lc_status judge_look(look *l, lc_measured *m, const lc_grading *g, const 
                             const spread *reference, lc_error *err)
 {
     double alpha = g->assignment->false_failure / g->rows / LOOKS / DECISIONS;
-    interval_of(m, mine, reference, alpha);
-    l->variance = decide(m, job->test);
+    interval_of(m, mine, reference, job->test->kind, alpha);
+    l->ratio = decide(m, job->test);
     /* A running mean varies little; rounding, which is all that a still film has, may well depend. */
     l->dependent = !is_still(mine->sum) && lc_film_depends(mine->sum, mine->sum->count / (uint64_t)mine->count, alpha);
     return judge_mean(&l->mean, g, mine->sum, reference->sum, alpha, err);
@@ -328,7 +386,7 @@ static lc_status judge_scene(double *share, lc_grading *g, const lc_job *job, co
     return status;
 }
 
-lc_status lc_grade_variance(lc_grading *g, const lc_job *job, lc_test_result *out, lc_error *err)
+lc_status lc_grade_method(lc_grading *g, const lc_job *job, lc_test_result *out, lc_error *err)
 {
     double share = 1;
     lc_status status = LC_OK;
