@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  *
  * Tests that ask for a method, by a number that a sample has, pooled over the image, beside the reference's: its variance, its rays, its
- * random numbers, or its variance times its rays, which is what a given noise costs (the inverse of Hammersley and Handscomb's efficiency,
- * Monte Carlo Methods 1964, 5.1) however many paths are averaged in one sample. None is taken to be normal: many films, each with its own number, show by how much that is uncertain. Of the variance
- * that needs a finite fourth moment, so that it is asked for over scenes only where a sample's light is bounded.
+ * random numbers, or its variance times its rays. That last is what a given noise costs, however many paths are averaged in one sample: the
+ * inverse of the efficiency of Hammersley and Handscomb, Monte Carlo Methods 1964, 5.1. None is taken to be normal: many films, each with
+ * its own number, show by how much that is uncertain. Of the variance that needs a finite fourth moment, so that it is asked for over
+ * scenes only where a sample's light is bounded.
  *
  * The films of this test can be told from others: by their samples a pixel, if by nothing else. So the samples that have the number
  * must have the right mean, too, and be independent of each other; else a file would give dark ones, or running means, where it
@@ -22,7 +23,7 @@
 enum { LOOKS = 3, PATHS = 1 << 16 };
 static const int films_of_look[LOOKS] = {16, 32, 72};
 
-/* Each look decides on a variance, a mean and the independence. */
+/* Each look decides on that number, a mean and the independence. */
 enum { DECISIONS = 3 };
 
 /* The mean must be shown within the assignment's margin, times max(1, c), but within no less than these films can show: this is seven
