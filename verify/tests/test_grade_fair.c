@@ -185,7 +185,7 @@ enum { LEARNT = sizeof learnt / sizeof learnt[0] };
 
 static void assign_method(void)
 {
-    assign(HEAD "\"tests\": [" LAMP_ONLY ", " TEST("method", "variance", ", \"scenes\": [\"plane_rectangle\"], \"at_most\": 2") ", "
+    assign("{\"title\": \"T\", \"reference\": \"three_point\", \"bounces\": 1, \"cpu_seconds\": 120, \"tests\": [" LAMP_ONLY ", " TEST("method", "variance", ", \"scenes\": [\"plane_rectangle\"], \"at_most\": 2") ", "
                 TEST("drawn", "check", ", \"check\": \"analytic\", \"scenes\": [\"random_rectangle\"], \"visibility\": \"hidden\"") ", "
                 TEST("drawn_method", "variance", ", \"scenes\": [\"random_rectangle\"], \"at_most\": 2, \"visibility\": \"hidden\"") ", "
                 COST(rays) ", " COST(numbers) ", " COST(work) "]}");
@@ -331,8 +331,13 @@ Suite *lc_suite_grade_fair(void)
     tcase_add_loop_test(tcase, test_fair_some_points, 0, sizeof some / sizeof some[0]);
     tcase_add_test(tcase, test_fair_all_learnt);
     tcase_add_loop_test(tcase, test_fair_still, 0, sizeof still / sizeof still[0]);
-    tcase_add_loop_test(tcase, test_fair_learnt, 0, LEARNT);
-    tcase_add_loop_test(tcase, test_fair_costs_of_the_right, 0, 2);
     suite_add_tcase(suite, tcase);
+    TCase *learnt_ones = tcase_create("learnt");
+    tcase_set_tags(learnt_ones, "long"); /* many samples, no code that other tests do not run */
+    tcase_set_timeout(learnt_ones, 200);
+    tcase_add_checked_fixture(learnt_ones, set_up, tear_down);
+    tcase_add_loop_test(learnt_ones, test_fair_learnt, 0, LEARNT);
+    tcase_add_loop_test(learnt_ones, test_fair_costs_of_the_right, 0, 2);
+    suite_add_tcase(suite, learnt_ones);
     return suite;
 }

@@ -2,7 +2,7 @@
 /* many_paths: blind directions where points on lamps are asked for, and as little noise, by many of them in one sample */
 #include "lightcheck.h"
 
-enum { MANY = 16 };
+enum { MANY = 8 };
 
 static lc_rgb direct(const lc_scene *scene, const lc_hit *hit, lc_sampler *sampler)
 {
