@@ -166,7 +166,7 @@ mitsuba-table: all ## every scene against Mitsuba 3: results/mitsuba.md (needs `
 renderer-study: all ## what the suite finds in Mitsuba 3 and POV-Ray: results/renderers.md (needs both; PYTHON=interpreter)
 	$(or $(PYTHON),python3) verify/renderers/study.py -o results/renderers.md
 
-asan-check: ## the same under the address and undefined-behaviour sanitizers, but for tests that only need many samples
+asan-check: ## the same under the address and undefined-behaviour sanitizers, but for what is about files, and tests that only need many samples
 	CK_EXCLUDE_TAGS=long $(MAKE) BUILD=$(BUILD)/asan SANITIZE=address,undefined CFLAGS='-O1 -g' check
 
 lint: ## dependencies between folders run one way, and other rules that a compiler does not know

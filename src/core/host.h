@@ -282,9 +282,8 @@ typedef struct lc_render_options {
     void *user;
 } lc_render_options;
 
-/* What a sample cost: (rays, random numbers, 0). Rays are lc_trace()'s and lc_visible()'s, the camera's not among them; numbers those that
- * the estimator drew, by lc_next() or through a function that draws. To be started before the sample, in the thread that makes it. */
-void lc_cost_start(void);
+/* What the sample that lc_render makes in this thread has cost so far, where it asks for costs: (rays, random numbers, 0). Rays are lc_trace()'s
+ * and lc_visible()'s, the camera's not among them; numbers those that the estimator drew, by lc_next() or through a function that draws. */
 lc_rgb lc_cost_of(const lc_sampler *sampler);
 
 /* Adds samples [first, first + count) of every pixel (of the shard) to the film. The result depends on scene, estimator, options but not on

@@ -118,7 +118,8 @@ lc_rgb lc_shape_radiance(const lc_scene *scene, int shape, int part, lc_vec3 p);
 /* Texture coordinates of a point on a shape at time 0, as Mitsuba 3 has them. */
 void lc_shape_uv(const lc_scene *scene, int shape, int part, lc_vec3 p, double *u, double *v);
 
-/* surface.c: one ray more of this thread's sample. */
+/* surface.c: this thread's sample begins, and has one ray more. */
+void lc_cost_start(void);
 void lc_count_ray(void);
 
 void lc_replay_begin(lc_radiance_fn *radiance);

@@ -157,6 +157,8 @@ static lc_status read_bounces(lc_test *test, const lc_place *place, lc_error *er
     return status;
 }
 
+const char *lc_test_kind_name(char *out, size_t size, lc_test_kind kind) { return lc_word_at(out, size, (int)kind, kinds); }
+
 /* What only some kinds know. */
 static lc_status read_particulars(lc_test *test, const lc_place *place, lc_error *err)
 {

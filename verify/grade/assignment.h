@@ -24,6 +24,8 @@ typedef enum lc_test_kind {
 
 /* 1: a test of the method: something about single samples, beside the same of the reference. */
 static inline int lc_is_of_method(lc_test_kind kind) { return kind >= LC_KIND_VARIANCE; }
+/* As an assignment's file has it. Returns `out`. */
+const char *lc_test_kind_name(char *out, size_t size, lc_test_kind kind);
 
 enum { LC_MOST_SCENES = 6, LC_MOST_SOLUTIONS = 12, LC_MOST_REQUIRED = LC_MOST_TESTS };
 

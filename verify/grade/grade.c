@@ -221,15 +221,10 @@ static void start_test(lc_grading *g, lc_test_result *out, const lc_test *test, 
     out->measured.bad_x = out->measured.bad_y = -1;
     out->measured.measured = out->measured.low = out->measured.high = out->measured.expected = NAN;
     out->measured.margin = out->measured.margin_shown = NAN;
-    snprintf(out->check, sizeof out->check, "%s",
-             test->kind == LC_KIND_DESCRIPTOR ? "descriptor"
-             : test->kind == LC_KIND_FINITE   ? "finite"
-             : test->kind == LC_KIND_MEAN     ? "mean"
-             : test->kind == LC_KIND_VARIANCE ? "variance"
-             : test->kind == LC_KIND_RAYS     ? "rays"
-             : test->kind == LC_KIND_NUMBERS  ? "numbers"
-             : test->kind == LC_KIND_WORK     ? "work"
-                                              : test->check);
+    if (test->kind == LC_KIND_CHECK)
+        snprintf(out->check, sizeof out->check, "%s", test->check);
+    else
+        lc_test_kind_name(out->check, sizeof out->check, test->kind);
     withhold(out, g, test->visibility == LC_AFTER_DUE ? a->due : a->published, is_now);
     char file[LC_SHELL_WORD(1024)], which[LC_SHELL_WORD(256)];
     snprintf(out->reproduce, sizeof out->reproduce, "%s grade %s%s -a %s --seed %llu --only %s", g->options->program,

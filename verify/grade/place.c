@@ -222,6 +222,14 @@ int lc_word_index(const char *word, const char *words)
     }
 }
 
+const char *lc_word_at(char *out, size_t size, int index, const char *words)
+{
+    for (; index > 0; --index)
+        words = strchr(words, '|') + 1;
+    snprintf(out, size, "%.*s", (int)strcspn(words, "|"), words);
+    return out;
+}
+
 /* "a|b|c" as "a, b, c". */
 static const char *spelt(char out[512], const char *words)
 {

@@ -59,5 +59,7 @@ lc_status lc_place_object(const lc_place *place, const char *keys, lc_error *err
 
 /* Index of a word in "a|b|c", or -1. */
 int lc_word_index(const char *word, const char *words);
+/* The other way round: the word of that index, which there is. Returns `out`. */
+const char *lc_word_at(char *out, size_t size, int index, const char *words);
 
 #endif

@@ -34,8 +34,6 @@ static void flush(void)
 static lc_rgb record(const lc_scene *scene, const lc_ray *ray, const lc_hit *hit, const lc_options *options,
                      lc_sampler *sampler)
 {
-    if (out.costs)
-        lc_cost_start();
     lc_rgb c = out.estimator->radiance(scene, ray, hit, options, sampler);
     if (out.costs)
         c = lc_cost_of(sampler);
@@ -125,9 +123,8 @@ static int render(const lc_wire_request *request, const lc_scene *scene, const l
     options.threads = 1;
     options.shard += options.shards * index;
     options.shards *= count;
-    options.costs = 0; /* record() has them */
     out.estimator = estimator;
-    out.costs = request->options.costs;
+    out.costs = options.costs;
     if (lc_film_create(&film, request->width, request->height, NULL) != LC_OK ||
         lc_render(film, scene, &recorder, &options, NULL) != LC_OK)
         return 0;
