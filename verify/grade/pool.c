@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "verify/grade/pool.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
+#include <string.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <time.h>
@@ -17,6 +19,19 @@ static double now(void)
     struct timespec t;
     clock_gettime(CLOCK_MONOTONIC, &t);
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* A fork takes one thread along and every lock. Embree's workers hold some for a moment when they start or wake, and a scene
+ * that is built in the child then waits for ever: seen once in a thousand forks, more often on a busy machine. */
+static lc_status check_alone(lc_error *err)
+{
+    int threads = 0;
+    DIR *tasks = opendir("/proc/self/task");
+    for (struct dirent *entry = tasks ? readdir(tasks) : NULL; entry; entry = readdir(tasks))
+        threads += entry->d_name[0] != '.';
+    if (tasks)
+        closedir(tasks);
+    return threads <= 1 ? LC_OK : lc_fail(err, LC_FAULT, "a process with %d threads cannot be split in two", threads);
 }
 
 /* In the child. */
@@ -107,6 +122,9 @@ lc_status lc_pool_run(lc_pool_job *jobs, int count, int at_once, lc_status (*on_
     const struct timespec pause = {0, 5000000};
     int started = 0, running = 0, first = 0;
     lc_status status = LC_OK;
+    for (int i = 0; i < count && status == LC_OK; ++i)
+        if (jobs[i].run)
+            status = check_alone(err);
     while (status == LC_OK && (started < count || running > 0)) {
         for (; started < count && running < at_once; ++running)
             start(&jobs[started++]);
@@ -123,5 +141,43 @@ lc_status lc_pool_run(lc_pool_job *jobs, int count, int at_once, lc_status (*on_
             nanosleep(&pause, NULL);
     }
     kill_all(jobs, started);
+    return status;
+}
+
+lc_status lc_pool_apart(lc_status (*work)(void *user, lc_error *err), void *user, lc_error *err)
+{
+    struct answer {
+        lc_status status;
+        lc_error err;
+    } answer = {LC_FAULT, {""}};
+    int ends[2], how = 0;
+    pid_t parent = getpid();
+    lc_status status = check_alone(err);
+    if (status == LC_OK && pipe(ends) != 0)
+        status = lc_fail(err, LC_FAULT, "cannot start a process: %s", strerror(errno));
+    if (status != LC_OK)
+        return status;
+    fflush(NULL); /* or the child would write it once more */
+    pid_t child = fork();
+    if (child == 0) {
+        prctl(PR_SET_PDEATHSIG, SIGKILL);
+        if (getppid() != parent)
+            _exit(127);
+        answer.status = work(user, &answer.err);
+        fflush(NULL);
+        _exit(write(ends[1], &answer, sizeof answer) != sizeof answer); /* far below what a pipe holds */
+    }
+    close(ends[1]);
+    while (child > 0 && waitpid(child, &how, 0) < 0 && errno == EINTR)
+        ;
+    if (child < 0)
+        status = lc_fail(err, LC_FAULT, "cannot start a process: %s", strerror(errno));
+    else if (WIFSIGNALED(how))
+        status = lc_fail(err, LC_FAULT, "a process of ours was ended by signal %d", WTERMSIG(how));
+    else if (read(ends[0], &answer, sizeof answer) != sizeof answer)
+        status = lc_fail(err, LC_FAULT, "a process of ours ended before it had answered");
+    else if ((status = answer.status) != LC_OK)
+        *err = answer.err;
+    close(ends[0]);
     return status;
 }

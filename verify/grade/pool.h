@@ -28,8 +28,13 @@ typedef struct lc_pool_job {
 
 /* Runs the jobs in their order, at most `at_once` at a time, and calls `on_end` after each, in the order in which they
  * end. One that is late gets SIGTERM, two seconds later SIGKILL. What `on_end` returns ends the run where it is not LC_OK: the
- * jobs that still run are killed. The caller has one thread. */
+ * jobs that still run are killed. LC_FAULT where a job is a function and the process has more than one thread: of these the
+ * function's process would have only what they had locked. */
 lc_status lc_pool_run(lc_pool_job *jobs, int count, int at_once, lc_status (*on_end)(lc_pool_job *job, lc_error *err),
                       lc_error *err);
+
+/* What `work` returns, from a process of its own: the threads that it starts, and the memory that it takes, are gone with
+ * that, and nothing comes back but its error. LC_FAULT where the process dies; the caller has one thread. */
+lc_status lc_pool_apart(lc_status (*work)(void *user, lc_error *err), void *user, lc_error *err);
 
 #endif

@@ -6,7 +6,7 @@
 set -eu
 cd "$(dirname "$0")/../.."
 what=host
-suites='bsdf warp sampler film camera accel surface render nee effects motion'
+suites='bsdf warp sampler film camera accel surface render nee effects motion pool'
 . verify/tests/wrong_copy.sh
 
 bsdf=src/core/bsdf.c glossy=src/core/glossy.c surface=src/core/surface.c warp=src/core/warp.c
@@ -80,6 +80,9 @@ mutant rays_of_all_samples src/core/surface.c 's/{ ray_count = 0; }/{ }/' render
 mutant numbers_of_the_camera_counted src/core/surface.c 's/ - (double)LC_DIMENSION_ESTIMATOR//' render
 mutant costs_are_radiance $render 's/if (o->costs)$/if (0)/' render
 mutant last_block_not_added $render 's/ || s + 1 == o->first + o->count)/)/' render
+
+# Processes.
+mutant forked_with_threads verify/grade/pool.c 's/return threads <= 1 ? LC_OK/return threads > 0 ? LC_OK/' pool
 
 # The camera.
 mutant half_a_pixel_off $camera 's/x + dx, y + dy/x + dx - 0.5, y + dy - 0.5/g' camera

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "verify/tests/tests.h"
 
+#include <pthread.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -112,6 +113,64 @@ START_TEST(test_pool_function)
 }
 END_TEST
 
+static void *idle(void *unused)
+{
+    pause();
+    return unused;
+}
+
+static lc_status refuse_input(void *user, lc_error *err) { return lc_fail(err, LC_BAD_INPUT, "no %s", (const char *)user); }
+
+/* Starts a thread, as Embree does when it builds a scene. */
+static lc_status start_thread(void *user, lc_error *err)
+{
+    pthread_t *thread = user;
+    return pthread_create(thread, NULL, idle, NULL) == 0 ? LC_OK : lc_fail(err, LC_FAULT, "no thread");
+}
+
+static lc_status die(void *user, lc_error *err)
+{
+    (void)user, (void)err;
+    raise(SIGKILL);
+    return LC_OK;
+}
+
+/* What is done apart leaves only its answer here. */
+START_TEST(test_pool_apart)
+{
+    char what[] = "such scene";
+    pthread_t thread;
+    lc_error err = {""};
+    lc_pool_job job = {.run = work, .seconds = 60, .user = (void *)1};
+    ck_assert_int_eq(lc_pool_apart(refuse_input, what, &err), LC_BAD_INPUT);
+    ck_assert_str_eq(err.text, "no such scene");
+    ck_assert_int_eq(lc_pool_apart(die, NULL, &err), LC_FAULT);
+    ck_assert_ptr_nonnull(strstr(err.text, "signal 9"));
+    ck_assert_int_eq(lc_pool_apart(start_thread, &thread, &err), LC_OK);
+    ended = 0;
+    ck_assert_int_eq(lc_pool_run(&job, 1, 1, note, &err), LC_OK);
+    ck_assert_int_eq(job.exit_status, 41);
+}
+END_TEST
+
+/* A lock that another thread holds is never given back in the child of a fork: it would wait for ever, now and then. */
+START_TEST(test_pool_threads)
+{
+    static const char *const quick[] = {"/bin/sh", "-c", "exit 0", NULL};
+    pthread_t thread;
+    char what[] = "scene";
+    lc_error err = {""};
+    lc_pool_job jobs[] = {shell(quick, 60, 1), {.run = work, .seconds = 60, .user = (void *)1}};
+    ck_assert_int_eq(start_thread(&thread, &err), LC_OK);
+    ended = 0;
+    ck_assert_int_eq(lc_pool_run(jobs, 2, 1, note, &err), LC_FAULT);
+    ck_assert_str_eq(err.text, "a process with 2 threads cannot be split in two");
+    ck_assert_int_eq(ended, 0);
+    ck_assert_int_eq(lc_pool_apart(refuse_input, what, &err), LC_FAULT);
+    ck_assert_int_eq(lc_pool_run(jobs, 1, 1, note, &err), LC_OK); /* a program takes no lock along */
+}
+END_TEST
+
 /* The first failure of the caller's ends the run, and what still runs. */
 START_TEST(test_pool_refused)
 {
@@ -132,6 +191,8 @@ Suite *lc_suite_pool(void)
     tcase_add_test(tests, test_pool_stuck);
     tcase_add_test(tests, test_pool_log);
     tcase_add_test(tests, test_pool_function);
+    tcase_add_test(tests, test_pool_apart);
+    tcase_add_test(tests, test_pool_threads);
     tcase_add_test(tests, test_pool_refused);
     suite_add_tcase(suite, tests);
     return suite;
