@@ -3,7 +3,7 @@
 # Variables: CC, CFLAGS, BUILD (folder of the objects), WERROR=1, SANITIZE=address,undefined
 
 CC      ?= cc
-CFLAGS  ?= -O2 -g
+CFLAGS  ?= -O3 -g
 BUILD   ?= build
 PKGCONF ?= pkg-config
 

@@ -67,7 +67,8 @@ int scene_number(struct reader *r, const struct node *node, const char *text, do
     int count = numbers(r, node, text, value, 1);
     if (count == 0)
         return scene_fail(r, node, "'%.60s' is no number", text);
-    *out = value[0];
+    if (count == 1)
+        *out = value[0];
     return count == 1;
 }
 

@@ -152,10 +152,11 @@ START_TEST(arms_are_distinct)
 {
     static uint64_t arms[4096];
     size_t count = 0;
-    for (int i = 0; name_of(i); ++i) {
+    const char *name;
+    for (int i = 0; (name = name_of(i)) != NULL; ++i) {
         char outside[160];
-        snprintf(outside, sizeof outside, "under test: %s", name_of(i));
-        uint32_t hash[2] = {lc_arm(name_of(i)), lc_arm(outside)};
+        snprintf(outside, sizeof outside, "under test: %s", name);
+        uint32_t hash[2] = {lc_arm(name), lc_arm(outside)};
         for (int k = 0; k < 2; ++k) {
             arms[count++] = hash[k];
             arms[count++] = (uint32_t)~hash[k];
