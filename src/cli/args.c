@@ -143,7 +143,9 @@ static const lc_option *find(const lc_option *options, const char *arg, const ch
     return NULL;
 }
 
-static lc_args_result read_option(const lc_command *command, const lc_option *options, int argc, char **argv, int *i)
+/* `given`: a bit for each option that was there before. Of two values one would be dropped without a word, and a run over two
+ * scenes would be one over the last. */
+static lc_args_result read_option(uint64_t *given, const lc_command *command, const lc_option *options, int argc, char **argv, int *i)
 {
     const char *value, *arg = argv[*i];
     const lc_option *o = find(options, arg, &value);
@@ -163,6 +165,12 @@ static lc_args_result read_option(const lc_command *command, const lc_option *op
         }
         value = argv[++*i];
     }
+    uint64_t bit = (uint64_t)1 << (o - options);
+    if ((*given & bit) && o->kind != LC_OPT_FLAG && o->kind != LC_OPT_LIST) {
+        lc_complain(command, LC_BAD_INPUT, "--%s: given twice, the second time with %s; it takes one value", o->name, value);
+        return LC_ARGS_BAD;
+    }
+    *given |= bit;
     return store(command, o, value);
 }
 
@@ -172,6 +180,7 @@ lc_args_result lc_args_read(const lc_command *command, const lc_option *options,
     rest->items = NULL;
     rest->count = 0;
     int only_rest = 0;
+    uint64_t given = 0;
     for (int i = 1; i < argc; ++i) {
         if (!only_rest && (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0)) {
             print_help(command, options);
@@ -180,7 +189,7 @@ lc_args_result lc_args_read(const lc_command *command, const lc_option *options,
         if (!only_rest && strcmp(argv[i], "--") == 0) {
             only_rest = 1;
         } else if (!only_rest && argv[i][0] == '-' && argv[i][1]) {
-            lc_args_result result = read_option(command, options, argc, argv, &i);
+            lc_args_result result = read_option(&given, command, options, argc, argv, &i);
             if (result != LC_ARGS_OK)
                 return result;
         } else if (!append(rest, argv[i])) {

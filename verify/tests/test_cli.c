@@ -225,6 +225,8 @@ START_TEST(bad_usage_is_2)
     run_bad(BAD, "two or more images", "merge", "a.exr", "-o", "b.exr");
     run_bad(BAD, "two or more images", "merge", "a.exr", "b.exr");
     run_bad(BAD, "unexpected argument 'cornell'", "verify", "cornell");
+    run_bad(BAD, "--scene: given twice, the second time with sky", "verify", "--scene", "cornell", "--scene=sky");
+    run_bad(BAD, "--samples: given twice", "render", "cornell", "-e", "light_direct", "-s", "1", "--samples", "1");
 }
 END_TEST
 
@@ -477,7 +479,7 @@ START_TEST(compare_has_three_answers)
     ck_assert_ptr_nonnull(strstr(ran.out, " FAIL "));
     run(WRONG, "compare", d, b);
     run_bad(BAD, "independent streams", "compare", a, a);
-    run(OK, RECTANGLE, "light_direct", "-s", "1", "--seed", "2", "-o", e);
+    run(OK, "render", "plane_rectangle", "-e", "light_direct", "-s", "1", "--seed", "2", "-o", e);
     run(UNDECIDED, "compare", a, e);
     ck_assert_ptr_nonnull(strstr(ran.out, "too few samples"));
     run(OK, RECTANGLE, "light_direct", "--size", "8x8", "--seed", "2", "-o", e);
