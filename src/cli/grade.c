@@ -136,9 +136,11 @@ static lc_status grade(void *user, const lc_strings *rest, lc_error *err)
                                   : lc_fail(err, LC_FAULT, "out of memory for a grading");
     if (status == LC_OK)
         status = read_seed(&options, a, is_class || a->metadata, err);
+    if (status == LC_OK && !is_class) /* a class tries it in a process of its own */
+        status = lc_grade_plan(assignment, &options, err);
     if (status == LC_OK && is_class)
         status = lc_cli_grade_class(&a->class, rest, assignment, &options, err);
-    else if (status == LC_OK && (status = lc_grade_plan(assignment, &options, err)) == LC_OK)
+    else if (status == LC_OK)
         status = grade_one(a, assignment, rest->items[0], &options, err);
     free(assignment);
     return status;

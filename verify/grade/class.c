@@ -191,13 +191,6 @@ static lc_status run(lc_class *c, lc_error *err)
     return status;
 }
 
-/* Apart: it builds scenes, and the process that forks the graders must have no threads. */
-static lc_status plan(void *user, lc_error *err)
-{
-    const lc_class_options *options = user;
-    return lc_grade_plan(options->assignment, &options->grade, err);
-}
-
 /* ---- before and after -------------------------------------------------------------------------------------------------- */
 
 static lc_status make_folders(const lc_class *c, lc_error *err)
@@ -214,11 +207,17 @@ static lc_status make_folders(const lc_class *c, lc_error *err)
     return LC_OK;
 }
 
+/* Apart: it builds scenes, and the process that forks the graders must have no threads. */
+static lc_status plan(void *user, lc_error *err)
+{
+    const lc_class *c = user;
+    return lc_grade_plan(c->options->assignment, &c->options->grade, err);
+}
+
 static lc_status begin(lc_class *c, lc_error *err)
 {
     int found = 0;
-    lc_class_options options = *c->options;
-    lc_status status = lc_pool_apart(plan, &options, err);
+    lc_status status = lc_pool_apart(plan, c, err);
     if (status == LC_OK)
         status = lc_class_make_rows(c, err);
     c->assignment_digest = lc_hash_file(LC_HASH, c->options->assignment->path);

@@ -120,11 +120,10 @@ lc_status lc_pool_run(lc_pool_job *jobs, int count, int at_once, lc_status (*on_
                       lc_error *err)
 {
     const struct timespec pause = {0, 5000000};
-    int started = 0, running = 0, first = 0;
-    lc_status status = LC_OK;
-    for (int i = 0; i < count && status == LC_OK; ++i)
-        if (jobs[i].run)
-            status = check_alone(err);
+    int started = 0, running = 0, first = 0, has_function = 0;
+    for (int i = 0; i < count; ++i)
+        has_function |= jobs[i].run != NULL;
+    lc_status status = has_function ? check_alone(err) : LC_OK;
     while (status == LC_OK && (started < count || running > 0)) {
         for (; started < count && running < at_once; ++running)
             start(&jobs[started++]);
