@@ -98,7 +98,7 @@ static const char *sentence_of(const lc_row *row, const lc_claim *claim, const l
     if (row->verdict == LC_ROW_PASS)
         return claim->relation ? "relation_right" : row->exact ? "right_exactly" : "right";
     if (claim->relation)
-        return "relation_wrong";
+        return row->verdict == LC_ROW_FAIL ? "relation_wrong" : share > 0 ? "relation_near" : "relation_open";
     if (row->exact)
         return isfinite(row->ratio) ? "wrong_pixel" : "light_from_nowhere";
     if (is_black(film))

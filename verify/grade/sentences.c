@@ -38,6 +38,10 @@ static const lc_sentence table[] = {
     {"relation_right", "{scene}: it agrees with itself: {relation}"},
     {"relation_wrong", "{scene}: it does not agree with itself over a scene that was changed: {measured} where 100% is expected, between {low} and "
                        "{high} ({relation})"},
+    {"relation_near", "{scene}: it agrees with itself to within {shown} over a scene that was changed, all points ask for {margin}: {measured}, between "
+                      "{low} and {high} ({relation})"},
+    {"relation_open", "{scene}: {measured} of the same over a scene that was changed, between {low} and {high} after {samples} samples a pixel: too "
+                      "noisy to show that it agrees with itself within {margin} ({relation})"},
     /* kind variance */
     {"variance_right", "{scene}: a sample varies {measured} as much as one of the method that is asked for, between {low} and {high}"},
     {"variance_high", "{scene}: a sample varies {measured} as much as one of the method that is asked for, between {low} and {high}; at most "

@@ -76,15 +76,17 @@ static void describe(lc_row *row, const lc_look *look)
 /* ---- numbers -------------------------------------------------------------------------------------------------- */
 
 /* Writes what the pyramid of one channel found into the row. */
-static void fill_numbers(lc_row *row, const lc_pyramid *p, int channel, double scale, double alpha_pass, double n)
+static void fill_numbers(lc_row *row, const lc_look *look, double alpha_pass)
 {
+    const lc_pyramid *p = &look->hardest;
     const lc_student *s = &p->whole.student;
     lc_interval interval = lc_student_interval(s, 2 * alpha_pass);
-    row->channel = channel;
+    double scale = look->scale;
+    row->channel = look->channel;
     row->expected = scale;
     row->ratio = 1 + s->difference / scale;
-    row->low = 1 + interval.lower / scale;
-    row->high = 1 + interval.upper / scale;
+    row->low = 1 + fmax(interval.lower, s->difference - look->reach) / scale;
+    row->high = 1 + fmin(interval.upper, s->difference + look->reach) / scale;
     row->tile_width = 0;
     if (p->worst.level >= 0) {
         row->tile_x = p->worst.x;
@@ -94,7 +96,7 @@ static void fill_numbers(lc_row *row, const lc_pyramid *p, int channel, double s
         row->tile_ratio = 1 + p->worst.student.difference / p->worst.student.expected;
         row->tile_log10_p = p->worst.log_p / log(10.0);
     }
-    row->missed = lc_missed_value(row->margin, n, 1e-6);
+    row->missed = lc_missed_value(row->margin, look->share * (double)row->paths, 1e-6);
 }
 
 /* How hard the channel was: FAIL before undecided before PASS, then by the deviation. */
@@ -108,7 +110,7 @@ double lc_row_hardness(const lc_pyramid *p, double scale)
 void lc_row_conclude(lc_row *row, const lc_look *look, double alpha_pass)
 {
     row->verdict = look->verdict == LC_PASS ? LC_ROW_PASS : look->verdict == LC_FAIL ? LC_ROW_FAIL : LC_ROW_UNDECIDED;
-    fill_numbers(row, &look->hardest, look->channel, look->scale, alpha_pass, look->share * (double)row->paths);
+    fill_numbers(row, look, alpha_pass);
     describe(row, look);
 }
 
@@ -332,6 +334,7 @@ lc_status lc_judge_look(lc_look *out, const lc_comparison *what, lc_estimate *fi
     int width = what->film->width, height = what->film->height;
     double most = -1;
     out->verdict = LC_PASS;
+    out->reach = INFINITY;
     out->share = lc_claim_share(what->skip, width * height);
     for (int c = 0; c < 3; ++c) {
         lc_pyramid pyramid;
@@ -421,7 +424,7 @@ static lc_status walk(lc_row *row, lc_session *session, const lc_claim *claim, c
     const lc_scene_desc *desc = lc_scene_description(claim->scene);
     const lc_expected *expected = way->expected;
     const lc_film *film = NULL, *other = NULL;
-    lc_look result = {.verdict = LC_GO_ON};
+    lc_look result = {.verdict = LC_GO_ON, .reach = INFINITY};
     lc_batches batches;
     int dependent = -1;
     for (int k = 0; k < way->looks.count && result.verdict == LC_GO_ON && dependent < 0; ++k) {

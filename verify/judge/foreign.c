@@ -319,7 +319,7 @@ static lc_status judge(lc_row *row, lc_session *session, const lc_claim *claim, 
     double tolerance = fmax(claim->tolerance, o->renderer->rounding);
     lc_budget budget = {o->false_fail, o->false_pass, session->rows, 3, LC_MOST_LOOKS};
     lc_pyramid_plan pyramid;
-    lc_look result = {.verdict = LC_GO_ON};
+    lc_look result = {.verdict = LC_GO_ON, .reach = INFINITY};
     foreign_film *f = NULL;
     for (int k = 0; k < LOOKS && result.verdict == LC_GO_ON; ++k) {
         uint64_t images = (uint64_t)IMAGES << (2 * k);

@@ -96,6 +96,7 @@ typedef struct lc_look {
     double scale; /* what 1 is [radiance]: the mean of what is expected; */
     int is_dark;  /* or, as nothing is, that of what was seen */
     double share; /* of the pixels, that were not left out */
+    double reach; /* the difference of the mean is this near to the one seen, by a bound beside Student's [radiance]; INFINITY: no bound */
 } lc_look;
 
 /* A film and what it is held against. */

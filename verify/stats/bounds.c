@@ -12,6 +12,14 @@ double lc_bernstein_bound(double variance, double n, double range, double alpha)
     return sqrt(2 * variance * l / n) + 7 * range * l / (3 * (n - 1));
 }
 
+double lc_met_bound(double square, double n, double largest, double alpha)
+{
+    if (!(square >= 0 && n >= 2 && largest > 0 && alpha > 0 && alpha < 1))
+        return NAN;
+    double l = log(6 / alpha);
+    return lc_bernstein_bound(square * n / (n - 1), n, 2 * largest, 4 * exp(-l)) + (1 + exp(1)) * largest * l / n;
+}
+
 double lc_missed_value(double margin, double n, double alpha)
 {
     return margin >= 0 && n >= 0 && alpha > 0 && alpha < 1 ? margin * n / -log(alpha) : NAN;

@@ -64,6 +64,14 @@ lc_looks lc_looks_plan(uint64_t planned, uint64_t most)
     return looks;
 }
 
+void lc_looks_reserve(lc_looks *looks, uint64_t most)
+{
+    while (looks->count < LC_MOST_LOOKS && looks->samples[looks->count - 1] <= most / 4) {
+        looks->samples[looks->count] = 4 * looks->samples[looks->count - 1];
+        ++looks->count;
+    }
+}
+
 double lc_samples_needed(double c, double margin, double z)
 {
     double ratio = c * z / margin;

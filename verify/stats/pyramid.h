@@ -50,6 +50,9 @@ typedef struct lc_looks {
  * 2/5 (two rows in three) or 3/5 (98 in 100). One look more or less costs hardly anything: five are paid for at 1% more
  * samples than one of them would need. */
 lc_looks lc_looks_plan(uint64_t planned, uint64_t most);
+/* Looks that the floor made one of several, which are paid for, become reserve: each has four times the samples of the one before,
+ * while that is at most `most`. For rows whose pilot cannot tell how many they need. */
+void lc_looks_reserve(lc_looks *looks, uint64_t most);
 /* Samples in all to decide a relative margin > 0 when a sample's standard deviation is c times the mean, with z =
  * z(alpha) + z(power): (c z / margin)^2. z = 11 leaves hardly any row undecided. */
 double lc_samples_needed(double c, double margin, double z);

@@ -80,6 +80,16 @@ static lc_rgb rarely(const lc_scene *scene, const lc_ray *ray, const lc_hit *hit
     return lc_rgb_scale(1 - take + (u < share ? take / share : 0), uniform_right(scene, ray, hit, options, sampler));
 }
 
+/* The same over both skies, but for one sample in many, 151 times as bright as others: that share over a bright sky, and that over a dark one. */
+static double seldom_share[2];
+static lc_rgb seldom(const lc_scene *scene, const lc_ray *ray, const lc_hit *hit, const lc_options *options, lc_sampler *sampler)
+{
+    (void)ray, (void)options;
+    int is_dark = !(lc_rgb_max(lc_emission(scene, hit)) > 0);
+    double u = lc_next(sampler), value = (is_dark ? 1 - u : u) < seldom_share[is_dark] ? 151 : 1;
+    return lc_color(value, value, value);
+}
+
 /* Without variance, unless one meets what it adds once in ten million samples: 1% of its mean. */
 static lc_rgb still(const lc_scene *scene, const lc_ray *ray, const lc_hit *hit, const lc_options *options, lc_sampler *sampler)
 {
@@ -501,6 +511,31 @@ START_TEST(rare_differences_do_not_fail)
 }
 END_TEST
 
+/* So few that no third moment can be believed: they are bounded by their size, once there are samples enough; what they add when they are
+ * as much as the margin is not taken for nothing. */
+START_TEST(few_differences_are_bounded)
+{
+    const setup s = {16, 16, MARGIN, 0, 1e-6, 1e-6};
+    lc_estimator e = estimator_of("seldom", seldom);
+    lc_scene *dark = build_scene(16, 16), *bright = build_sky(16, 16, 1);
+    lc_claim claim = {.scene = dark, .estimator = &e, .term = {{bright, 1, 0}}, .term_count = 1, .paired = 1, .relation = "sky"};
+    int bounded = 0;
+    seldom_share[0] = seldom_share[1] = 5e-6;
+    for (uint64_t seed = 1; seed <= 40; ++seed) {
+        lc_row row = judge_with(&s, claim, seed);
+        ck_assert_msg(row.verdict == LC_ROW_PASS && row.samples <= 4096, "seed %d, %d samples: %s", (int)seed, (int)row.samples, row.reason);
+        bounded += !row.exact;
+        ck_assert(row.exact || (row.low > 1 - MARGIN && row.low < row.ratio && row.ratio < row.high && row.high < 1 + MARGIN));
+    }
+    ck_assert_int_ge(bounded, 3);
+    seldom_share[0] += MARGIN / 150;
+    for (uint64_t seed = 1; seed <= 6; ++seed)
+        ck_assert(judge_with(&s, claim, seed).verdict == LC_ROW_FAIL);
+    lc_scene_free(dark);
+    lc_scene_free(bright);
+}
+END_TEST
+
 /* The margin of a relation is of a mean that is measured, too: what is off by just the margin does not pass where that mean came out high. */
 START_TEST(a_measured_margin_of_a_relation_has_noise)
 {
@@ -540,6 +575,7 @@ Suite *lc_suite_judge_mutants(void)
     tcase_add_test(cases, gaussian_tails_are_students);
     tcase_add_test(cases, a_measured_margin_has_noise);
     tcase_add_test(cases, rare_differences_do_not_fail);
+    tcase_add_test(cases, few_differences_are_bounded);
     tcase_add_test(cases, a_measured_margin_of_a_relation_has_noise);
     tcase_set_timeout(cases, 60);
     suite_add_tcase(suite, cases);

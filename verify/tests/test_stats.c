@@ -159,6 +159,37 @@ START_TEST(bernstein_covers)
 }
 END_TEST
 
+/* Of samples that are 1, or more rarely -10, all outcomes: what those add that are no larger than the largest met. A twentieth of the
+ * bound is not enough. */
+START_TEST(what_was_met_is_bounded)
+{
+    const int n = 3000;
+    const double alpha = 0.01;
+    double worst = 0, worst_part = 0;
+    for (double small = 0.1; small < 30; small *= 2)
+        for (double large = 0.1; large < 30; large *= 2) {
+            double missed = 0, missed_part = 0;
+            for (int i = 0; i <= 80; ++i)
+                for (int k = 0; k <= 80; ++k) {
+                    if (i + k == 0)
+                        continue; /* nothing was met, and nothing is said */
+                    double chance = binomial(n, i, small / n) * binomial(n, k, large / n);
+                    double bound = lc_met_bound((i + 100.0 * k) / n, n, k ? 10 : 1, alpha);
+                    double off = fabs((i - 10.0 * k) - (small - (k ? 10 * large : 0))) / n;
+                    missed += off > bound ? chance : 0;
+                    missed_part += off > bound / 20 ? chance : 0;
+                }
+            worst = fmax(worst, missed);
+            worst_part = fmax(worst_part, missed_part);
+        }
+    ck_assert_msg(worst <= alpha && worst_part > alpha, "%g %g", worst, worst_part);
+    check_close(lc_met_bound(25, 1000, 50, alpha), 10 * lc_met_bound(0.25, 1000, 5, alpha), 1e-14);
+    /* By hand: l = ln 600, sqrt(2 * 0.25 * 1000 / 999 * l / 1000) + 14 * 5 * l / (3 * 999) + (1 + e) * 5 * l / 1000. */
+    check_close(lc_met_bound(0.25, 1000, 5, alpha), 0.3249223099763824, 1e-12);
+    ck_assert(isnan(lc_met_bound(1, 1, 1, alpha)) && isnan(lc_met_bound(1, 9, 0, alpha)));
+}
+END_TEST
+
 START_TEST(missed_contributions_are_excluded_at_alpha)
 {
     const double n = 4096, margin = 0.01, alpha = 1e-6;
@@ -381,6 +412,7 @@ Suite *lc_suite_stats(void)
     tcase_add_test(tails, sidak_keeps_its_digits);
     tcase_add_test(bounds, clopper_pearson_is_exact);
     tcase_add_test(bounds, bernstein_covers);
+    tcase_add_test(bounds, what_was_met_is_bounded);
     tcase_add_test(bounds, missed_contributions_are_excluded_at_alpha);
     tcase_add_test(tests, chi_square_of_a_die);
     tcase_add_test(tests, chi_square_pools_by_expectation);

@@ -122,6 +122,11 @@ START_TEST(looks_are_shares_of_the_plan)
     ck_assert(looks.count == 2 && looks.samples[0] == LC_LEAST_SAMPLES && looks.samples[1] == 1024);
     looks = lc_looks_plan(100, 10); /* somebody has to look once */
     ck_assert(looks.count == 1 && looks.samples[0] == LC_LEAST_SAMPLES);
+    lc_looks_reserve(&looks, 1 << 20); /* no look is left over for less than four times the last */
+    ck_assert(looks.count == LC_MOST_LOOKS && looks.samples[1] == 4 * LC_LEAST_SAMPLES && looks.samples[4] == 65536);
+    looks = lc_looks_plan(100, 1 << 20);
+    lc_looks_reserve(&looks, 16383);
+    ck_assert(looks.count == 3 && looks.samples[2] == 4096);
     check_close(lc_samples_needed(2, 0.01, 11), 2200.0 * 2200.0, 1e-14);
 }
 END_TEST
