@@ -17,7 +17,7 @@ double lc_met_bound(double square, double n, double largest, double alpha)
     if (!(square >= 0 && n >= 2 && largest > 0 && alpha > 0 && alpha < 1))
         return NAN;
     double l = log(6 / alpha);
-    return lc_bernstein_bound(square * n / (n - 1), n, 2 * largest, 4 * exp(-l)) + (1 + exp(1)) * largest * l / n;
+    return lc_bernstein_bound(square * n / (n - 1), n, 2 * largest, 4 * exp(-l)) + (3 + exp(1)) * largest * l / n;
 }
 
 double lc_missed_value(double margin, double n, double alpha)

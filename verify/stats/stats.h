@@ -42,12 +42,11 @@
  * and Pontil, COLT 2009, Theorem 4, once a side. */
 double lc_bernstein_bound(double variance, double n, double range, double alpha);
 
-/* The same where no range is known but that the n samples, of mean square `square`, were none larger than `largest` > 0: what samples of
- * that size and below add to the mean differs from the mean seen by at most the value returned, except with probability alpha (both
- * sides together). What larger ones add nobody has met: lc_missed_value() is about these. With l = ln(6 / alpha): let M be the size that l
- * samples are expected to reach. `largest` >= M but for exp(-l); those between M and `largest` add at most largest l / n to the mean, and
- * at most e l of them were seen but for exp(-l) (Chernoff), of the mean seen e largest l / n; the others have the range 2 M, and
- * the bound above takes the 4 exp(-l) that are left. */
+/* The same where no range is known but that the n samples, of mean square `square`, were none larger than `largest` > 0, of laws whose tails
+ * fall as x^-1.5 or faster, so that they need have no variance. With l = ln(6 / alpha), let M be the size that l samples are expected to
+ * reach: `largest` >= M but for exp(-l). Larger ones add at most 3 M l / n to the mean; at most e l of them were seen but for
+ * exp(-l) (Chernoff), of the mean seen e largest l / n; the others have the range 2 M, and the bound above takes the 4 exp(-l)
+ * that are left. Of what is rarer, and larger than such a tail has it, lc_missed_value() tells. */
 double lc_met_bound(double square, double n, double largest, double alpha);
 
 /* Size of the contribution that n samples exclude though they never met it: margin n / ln(1 / alpha). A contribution
