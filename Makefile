@@ -64,7 +64,7 @@ PROOF := $(patsubst %.c,$(BUILD)/obj/%.o,$(filter-out %/calibrate.c %/power.c %/
 
 .PHONY: all check verify verify-table full-table specular-proof pictures povray-reference mitsuba-table renderer-study lint asan-check \
         calibrate power seeds few-seeds proof judge-mutants host-mutants mutants diagnosis-proof gradings bench \
-        student-kit gradescope-zip gradescope-check class needs fresh clean help
+        student-kit gradescope-zip gradescope-check docker-check class needs fresh clean help
 all: $(BUILD)/lightcheck $(BUILD)/lightcheck-worker $(BUILD)/obj/estimators/template.o ## build the program
 
 # A plug-in finds the functions of lightcheck.h in the program, and no others.
@@ -153,6 +153,9 @@ gradescope-zip: all ## an autograder for Gradescope: build/gradescope-NAME.zip (
 
 gradescope-check: all ## such an autograder in a new minimal Debian laid out as Gradescope's image (root, debootstrap)
 	@sh verify/tests/gradescope.sh
+
+docker-check: all ## the student's Dockerfile, the jail and all cheats in Docker itself (a running Docker; DOCKER_NETWORK=host where its builds have no network)
+	@sh verify/tests/docker.sh
 
 class: all ## grade a class of 60 hand-ins that hang, crash or do not compile, and kill the grader: results/class.md
 	sh verify/tests/class.sh $(BUILD)/lightcheck 60 light_direct results/class.md

@@ -62,4 +62,7 @@ static int drop_capabilities(void)
     return capset(&header, data) == 0;
 }
 
-int lc_test_become_docker(void) { return geteuid() == 0 && filter_calls() && drop_capabilities(); }
+/* In Docker itself nothing is left to be imitated, nor could it be: a filter needs what Docker takes. */
+static int is_docker(void) { return prctl(PR_GET_SECCOMP, 0, 0, 0, 0) == 2 && prctl(PR_CAPBSET_READ, CAP_SYS_ADMIN, 0, 0, 0) == 0; }
+
+int lc_test_become_docker(void) { return geteuid() == 0 && (is_docker() || (filter_calls() && drop_capabilities())); }
