@@ -81,16 +81,6 @@ static void fill_numbers(lc_test_result *out, const lc_row *row)
     snprintf(out->scene, sizeof out->scene, "%s", row->scene);
 }
 
-/* Not one sample carries light, though some is expected. */
-static int is_black(const lc_film *film)
-{
-    for (size_t i = 0; film && i < (size_t)film->width * (size_t)film->height; ++i)
-        for (int c = 0; c < 3; ++c)
-            if (film->pixels[i].c[c].max > 0)
-                return 0;
-    return film != NULL;
-}
-
 static const char *sentence_of(const lc_row *row, const lc_claim *claim, const lc_film *film, double share)
 {
     if (row->dependent)
@@ -101,7 +91,7 @@ static const char *sentence_of(const lc_row *row, const lc_claim *claim, const l
         return row->verdict == LC_ROW_FAIL ? "relation_wrong" : share > 0 ? "relation_near" : "relation_open";
     if (row->exact)
         return isfinite(row->ratio) ? "wrong_pixel" : "light_from_nowhere";
-    if (is_black(film))
+    if (film && lc_film_is_black(film))
         return "black";
     if (row->verdict == LC_ROW_UNDECIDED)
         return share > 0 ? "near" : "open";

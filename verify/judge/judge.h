@@ -79,6 +79,8 @@ lc_status lc_measure_cells(lc_load_scene_fn *load, const lc_estimator *estimator
 
 /* c of a film: standard deviation of a sample over the mean, both pooled over the image, in the channel where it is largest. */
 double lc_film_noise(const lc_film *film);
+/* 1 when not one sample carries light. */
+int lc_film_is_black(const lc_film *film);
 
 /* ---- one claim at a time: what a grader needs ---------------------------------------------------------------------- */
 

@@ -45,15 +45,6 @@ static double noise_of(const lc_film *film, const lc_film *difference)
     return most;
 }
 
-static int has_light(const lc_film *film)
-{
-    for (size_t i = 0; i < (size_t)film->width * (size_t)film->height; ++i)
-        for (int c = 0; c < 3; ++c)
-            if (film->pixels[i].c[c].max > 0)
-                return 1;
-    return 0;
-}
-
 /* The light, if the root mean square of the differences is below the tolerance in each pixel; else 0. */
 static double light_of_agreement(const lc_film *film, const lc_film *difference, double tolerance)
 {
@@ -92,10 +83,9 @@ static double reach_of(const lc_film *difference, int channel, double alpha)
 }
 
 static lc_status judge_look(lc_look *out, const lc_film *film, const lc_film *difference, const double *zero,
-                            lc_estimate *field, lc_pyramid_plan *plan, double alpha_few, double margin, double tolerance,
-                            lc_error *err)
+                            lc_estimate *field, lc_pyramid_plan *plan, double margin, double tolerance, lc_error *err)
 {
-    double most = -1;
+    double most = -1, alpha_few = FEW_SHARE / (1 - FEW_SHARE) * plan->alpha_pass;
     out->verdict = LC_PASS;
     out->share = 1;
     for (int c = 0; c < 3; ++c) {
@@ -172,12 +162,11 @@ static lc_status judge(lc_row *row, lc_session *session, const lc_claim *claim, 
     row->margin = lc_claim_margin(session, claim, c);
     uint64_t most = (uint64_t)fmin(session->options->suite->most_samples / pixels, UINT32_MAX);
     lc_looks looks = lc_looks_plan(lc_planned_samples(c, row->margin, pixels), most);
-    if (has_light(film)) /* few differences, none of which the pilot met, may need more to be bounded; of black nothing is ever shown */
+    if (!lc_film_is_black(film)) /* few differences, none of which the pilot met, may need more to be bounded; of black nothing is ever shown */
         lc_looks_reserve(&looks, most);
     lc_budget budget = {session->options->false_fail, session->options->false_pass, session->rows, 3, LC_MOST_LOOKS};
     lc_pyramid_plan plan;
-    double alpha_pass = lc_budget_row_pass(&budget), alpha_few = FEW_SHARE * alpha_pass;
-    lc_pyramid_plan_init(&plan, lc_budget_row_fail(&budget), alpha_pass - alpha_few);
+    lc_pyramid_plan_init(&plan, lc_budget_row_fail(&budget), (1 - FEW_SHARE) * lc_budget_row_pass(&budget));
     /* Where paths part, differences are rare and large, of both signs, so that third moments cancel: the guard against heavy tails does not
      * see, in a tile that none of them has met, that the little that is left is not all. */
     lc_plan_whole(&plan, desc->width, desc->height);
@@ -192,7 +181,7 @@ static lc_status judge(lc_row *row, lc_session *session, const lc_claim *claim, 
             lc_row_show(session, row, (lc_exhibit){film, NULL, NULL, difference, NULL});
             return LC_OK;
         }
-        status = judge_look(&result, film, difference, zero, field, &plan, alpha_few, row->margin, claim->tolerance, err);
+        status = judge_look(&result, film, difference, zero, field, &plan, row->margin, claim->tolerance, err);
         if (status != LC_OK)
             return status;
     }

@@ -212,6 +212,15 @@ void lc_session_forget(lc_session *session, const lc_estimator *estimator)
     session->film_count = kept;
 }
 
+int lc_film_is_black(const lc_film *film)
+{
+    for (size_t i = 0; i < (size_t)film->width * (size_t)film->height; ++i)
+        for (int c = 0; c < 3; ++c)
+            if (film->pixels[i].c[c].max > 0)
+                return 0;
+    return 1;
+}
+
 double lc_film_noise(const lc_film *film)
 {
     double most = 0;

@@ -30,18 +30,6 @@ if ! docker image inspect debian:12 >/dev/null 2>&1 && ! docker pull -q debian:1
     )
 fi
 
-failed=0 passed=0
-# expect NAME WHAT: the basic regular expression WHAT stands in the log.
-expect() {
-    if grep -q "$2" "$log"; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "docker.sh: $1: no $2 in:"
-        tail -n 30 "$log"
-    fi
-}
-
 # build IMAGE FOLDER
 build() {
     start=$(seconds)
@@ -53,26 +41,26 @@ build() {
 }
 
 # inside_docker IMAGE COMMAND: nothing of the network, and the folder of a student as /work.
-mkdir "$folder/work"
+mkdir "$folder/student"
 inside_docker() {
-    docker run --rm --network none -v "$folder/work:/work" "$1" sh -c "$2" >"$log" 2>&1 || echo "exit status $?" >>"$log"
+    docker run --rm --network none -v "$folder/student:/work" "$1" sh -c "$2" >"$log" 2>&1 || echo "exit status $?" >>"$log"
 }
 
 sh verify/grade/kit/make_kit.sh build/lightcheck "$folder/kit" >/dev/null
 build "$student" "$folder/kit"
-cp verify/tests/handins/all_lights.c "$folder/work/right.c"
-sed 's/weight \*= fmax/weight = fmax/' verify/tests/handins/all_lights.c >"$folder/work/wrong.c"
+cp verify/tests/handins/all_lights.c "$folder/student/right.c"
+sed 's/weight \*= fmax/weight = fmax/' verify/tests/handins/all_lights.c >"$folder/student/wrong.c"
 inside_docker "$student" 'lightcheck new first && lightcheck render cornell -e first.c -s 16 -o first.png && lightcheck verify -e first.c -c emission'
-expect 'first steps' '^[0-9]* rows: [0-9]* PASS, 0 FAIL, 0 UNDECIDED'
-[ -s "$folder/work/first.png" ] || expect 'first steps' '^a picture that the student has outside$'
+expect 'first steps' '^[0-9]* rows: [0-9]* PASS, 0 FAIL, 0 UNDECIDED' "$log"
+[ -s "$folder/student/first.png" ] || expect 'first steps' '^a picture that the student has outside$' "$log"
 inside_docker "$student" 'lightcheck grade right.c -a light_direct'
-expect 'right file' '^score \([0-9.]*\) of \1,'
-expect 'right file' 'jail: limits, seccomp, Landlock, another user$'
+expect 'right file' '^score \([0-9.]*\) of \1,' "$log"
+expect 'right file' 'jail: limits, seccomp, Landlock, another user$' "$log"
 inside_docker "$student" 'lightcheck grade wrong.c -a light_direct'
-expect 'wrong file' '^exit status 1$'
+expect 'wrong file' '^exit status 1$' "$log"
 inside_docker "$student" 'setpriv --reuid 65534 --regid 65534 --clear-groups lightcheck grade right.c -a light_direct'
-expect 'as nobody' 'jail: limits, seccomp, Landlock; without: another user$'
-expect 'as nobody' '^score \([0-9.]*\) of \1,'
+expect 'as nobody' 'jail: limits, seccomp, Landlock; without: another user$' "$log"
+expect 'as nobody' '^score \([0-9.]*\) of \1,' "$log"
 
 git archive --prefix=lightcheck/ HEAD | tar -x -C "$folder"
 cat >"$folder/lightcheck/Dockerfile" <<'DOCKERFILE'
@@ -84,7 +72,7 @@ DOCKERFILE
 build "$tests" "$folder/lightcheck"
 for suite in jail plugin pool grade grade_fair class; do
     inside_docker "$tests" "CK_VERBOSITY=normal CK_TIMEOUT_MULTIPLIER=5 LIGHTCHECK=build/lightcheck build/tests $suite"
-    expect "suite $suite" '100%: Checks: [0-9]*, Failures: 0, Errors: 0'
+    expect "suite $suite" '100%: Checks: [0-9]*, Failures: 0, Errors: 0' "$log"
 done
 echo "$passed passed, $failed failed"
 [ $failed = 0 ]

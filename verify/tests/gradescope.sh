@@ -16,18 +16,6 @@ mkdir -p "$base/source" "$base/submission" "$base/results"
 unzip -q "$zip" -d "$base/source"
 cp "$base/source/run_autograder" "$base/run_autograder"
 
-failed=0 passed=0
-# expect NAME WHAT FILE: the basic regular expression WHAT stands in FILE.
-expect() {
-    if grep -q "$2" "$3"; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "gradescope.sh: $1: no $2 in:"
-        tail -n 30 "$3"
-    fi
-}
-
 # On a system that is too old it says so in one sentence.
 cp "$root/usr/lib/os-release" "$folder/os-release"
 printf 'ID=ubuntu\nVERSION_ID="22.04"\nPRETTY_NAME="Ubuntu 22.04.4 LTS"\n' >"$root/usr/lib/os-release"

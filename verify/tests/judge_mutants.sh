@@ -43,7 +43,7 @@ mutant margin_of_a_relation_is_exact verify/judge/paired.c 's/fmax(0, mean - 8 \
 mutant few_differences_are_never_enough verify/judge/paired.c 's/pyramid.verdict == LC_GO_ON && terms.least > 0/0 \&\& terms.least > 0/'
 mutant few_differences_are_no_error verify/judge/paired.c 's/return most > 0 ? lc_met_bound/return most < 0 ? lc_met_bound/'
 mutant few_differences_have_no_size verify/stats/bounds.c 's/2 \* largest, 4 \* exp(-l)) + (3 + exp(1)) \* largest/1e-9 * largest, 4 * exp(-l)) + 1e-9 * largest/'
-mutant few_differences_end_with_the_plan verify/judge/paired.c 's/if (has_light(film))/if (0 \&\& has_light(film))/'
+mutant few_differences_end_with_the_plan verify/judge/paired.c 's/if (!lc_film_is_black(film))/if (lc_film_is_black(film))/'
 mutant tiles_of_differences verify/judge/paired.c 's/^    lc_plan_whole(&plan/    if (claim->whole_only) lc_plan_whole(\&plan/'
 
 # The pyramid.

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # For scripts that try something in a new minimal Debian: `. verify/tests/root.sh`, then `make_root SUITE`. Gives $root, the
-# folder of it, $log, and inside(). Needs root, debootstrap, and 1.5 GB in TMPDIR. Mirror and apt settings are this system's; on
-# one that is not Debian, set MIRROR. The root is gone when the script ends.
+# folder of it, $log, and inside(); to any script expect(), which counts in $passed and $failed. Needs root, debootstrap, and
+# 1.5 GB in TMPDIR. Mirror and apt settings are this system's; on one that is not Debian, set MIRROR. The root is gone when the
+# script ends.
 
 fail() {
     echo "${0##*/}: $*" >&2
@@ -9,6 +10,18 @@ fail() {
 }
 
 seconds() { date +%s; }
+
+failed=0 passed=0
+# expect NAME WHAT FILE: the basic regular expression WHAT stands in FILE.
+expect() {
+    if grep -q "$2" "$3"; then
+        passed=$((passed + 1))
+    else
+        failed=$((failed + 1))
+        echo "${0##*/}: $1: no $2 in:"
+        tail -n 30 "$3"
+    fi
+}
 
 finish_root() {
     if mountpoint -q "$root/proc"; then
